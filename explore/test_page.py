@@ -10,6 +10,7 @@ from playwright.sync_api import Page
 
 from conftest import ROOT
 from relay_contact import Component, run
+from relay_contact.component import sine
 
 COMPONENT = ROOT / "dist/RelayContact.fmu"
 Scheme = Literal["light", "dark"]
@@ -78,12 +79,8 @@ def test_level_is_that_of_the_component(page: Page) -> None:
     for each in found:
         for factor, opens in ((0.995, False), (1.005, True)):
             amplitude, frequency = factor * each["level"], each["frequency"]
-            sine = {
-                "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude,
-            }  # fmt: skip
-            with component.started(sine) as contact:
-                contact.rise(frequency, amplitude, 40, 64)
-                contact.step(40 / frequency, 20 / frequency)
+            with component.started(sine(frequency, amplitude, 40 / frequency)) as contact:
+                contact.step(0.0, 60 / frequency)
                 contact.step(60 / frequency, 4 / frequency)
                 assert (contact.get("contact.lastOpening") > 60 / frequency) == opens, (each, factor)
 

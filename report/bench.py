@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from relay_contact import Array, Component, Contact, Value, Values
+from relay_contact.component import sine
 from report.published import ACCELERATION, BEST
 
 RISE, SAMPLES = 20, 64
@@ -97,11 +98,7 @@ class Bench:
 
     def shaken(self, values: Values, frequency: float, level: float, rise: int = 0) -> float:
         """Begin a vibration from rest that rises over so many periods; return the deflection at rest, m."""
-        sine: Values = {
-            "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level,
-            "excitation.riseTime": rise / frequency,
-        }  # fmt: skip
-        self.contact.begin_anew({**values, **sine})
+        self.contact.begin_anew({**values, **sine(frequency, level, rise / frequency)})
         return self.contact.get("tip.displacement")
 
     def period(self, frequency: float, level: float, deflection: float, number: int, repeats: bool = False) -> Period:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from relay_contact import Component, Values
+from relay_contact.component import sine
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.excitation import Shock, Sine
 from relay_contact.qualification.level import RESOLUTION, Lengths, threshold
@@ -92,8 +93,7 @@ class Thresholds:
 def suddenly(frequency: float, factor: float) -> Lengths:
     """Return the longest interruptions of a vibration (g) that starts at full level, until the start is forgotten."""
     own = subject()
-    sine: Values = {"effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": factor * G}
-    with own.start(sine) as contact, contact.explained():
+    with own.start(sine(frequency, factor * G)) as contact, contact.explained():
         contact.step(0.0, np.ceil(max(10.0, 0.03 * frequency)) / frequency)
         return own.longest(contact)
 

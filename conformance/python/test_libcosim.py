@@ -1,13 +1,11 @@
 """The component in libcosim, which reckons time in whole nanoseconds and knows no enumerations."""
 
 import re
-import subprocess
-import sys
 import zipfile
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from component import FMU, PLAIN, ROOT, SPRUNG
+from component import FMU, PLAIN, SPRUNG
 from relay_contact import Component
 from results import JUMP, PUBLISHED, STEP, SYSTEM, TOLERANCE, column, compare, missing, published
 
@@ -129,16 +127,3 @@ def test_two_springs_in_one_system_are_not_taken_for_each_other(tmp_path: Path) 
         expected = [each.get("preload.frequency") for each in (uniform, tapered)]
     assert found == expected
     assert abs(found[0] - found[1]) > 100.0
-
-
-def test_a_contact_and_a_magnet_of_pythonfmu_do_as_in_fmpy(tmp_path: Path) -> None:
-    """By the example that couples them."""
-    example = ROOT / "examples/python/actuator.py"
-    program = [sys.executable, str(example), "--quick", "--libcosim", "--fmu", str(FMU), "--out", str(tmp_path)]
-    done = subprocess.run(program, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    told = re.search(r"libcosim: .*; (\S+) N from FMPy", done.stdout)
-    assert told
-    # Instants reckoned by sums of 7200 steps are off by at most 7200 * 2^-53 * 36 ms = 3e-14 s, in which a force that
-    # rises by 15 N in 5 us changes by
-    assert float(told[1]) < 1e-7

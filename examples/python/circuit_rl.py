@@ -22,7 +22,7 @@ import numpy as np
 from tqdm import tqdm
 
 from circuit import Circuit, State
-from common import parser, read_arguments, save, within
+from common import parser, read_arguments, save
 from ngspice import Course, NgSpice
 from relay_contact import Array, Component, Contact, Scene, write_table
 from relay_contact.figures import BLUE, GREY, ORANGE, RED, SKY, legend_beside
@@ -130,11 +130,10 @@ def chosen(name: str | None) -> tuple[str, Solver]:
 
 def main() -> None:
     """Run the coupling."""
-    line = parser("The contact in a 6 V RL circuit. Takes half a minute, with --quick some seconds.")
-    line.add_argument("--quick", action="store_true", help="2.5 ms instead of 10 ms")
+    step_ = (2.0, 0.1, 50.0, "µs", "communication step of the waveforms")
+    text = "The contact in a 6 V RL circuit. Takes half a minute, with --quick some seconds."
+    line = parser(text, "2.5 ms instead of 10 ms", step=step_)
     line.add_argument("--circuit", choices=["ngspice", "built-in"], help="default: ngspice if it is installed")
-    text = "communication step of the waveforms [µs] (%(default)s)"
-    line.add_argument("--step", type=within(0.1, 50, "µs"), default=2.0, help=text)
     given = read_arguments(line)
     name, solver = chosen(given.circuit)
     stop, step = (2.5 if given.quick else 10) * PERIOD, 1e-6 * given.step

@@ -25,7 +25,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, LogNorm
 from tqdm import tqdm
 
-from common import parser, read_arguments, save, within
+from common import parser, read_arguments, save
 from relay_contact import Array, Component, Values, write_table
 from relay_contact.figures import BLUE, GREY, ORANGE, RED
 
@@ -210,19 +210,14 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
 
 def main() -> None:
     """Run the map."""
-    line = parser(str(__doc__).splitlines()[0], epilog="Takes about half a minute.")
-    line.add_argument("--quick", action="store_true", help="6 speeds and 4 dampings instead of 24 and 13")
-    limits = {
-        "gap": (20.0, 1.0, 5000.0, "µm", "gap before the make"),
-        "overtravel": (200.0, 10.0, 5000.0, "µm", "travel after the first touch"),
-        "minimum": (1.0, 0.01, 1000.0, "µs", "shortest interruption that counts as a bounce"),
-        "speed": (60.0, 1.0, 500.0, "mm/s", "speed of the courses shown"),
-        "damping": (1.0, 0.0, 1000.0, "µs", "contact damping of the courses shown"),
-    }
-    for name, (value, low, high, unit, text) in limits.items():
-        text += f" [{unit}], {low:g} to {high:g} (%(default)s)"
-        line.add_argument(f"--{name}", type=within(low, high, unit), default=value, help=text)
-    given = read_arguments(line)
+    given = read_arguments(parser(
+        __doc__, "6 speeds and 4 dampings instead of 24 and 13", "about half a minute",
+        gap=(20.0, 1.0, 5000.0, "µm", "gap before the make"),
+        overtravel=(200.0, 10.0, 5000.0, "µm", "travel after the first touch"),
+        minimum=(1.0, 0.01, 1000.0, "µs", "shortest interruption that counts as a bounce"),
+        speed=(60.0, 1.0, 500.0, "mm/s", "speed of the courses shown"),
+        damping=(1.0, 0.0, 1000.0, "µs", "contact damping of the courses shown"),
+    ))  # fmt: skip
     speeds = 1e-3 * np.geomspace(5, 400, 6 if given.quick else 24)
     dampings = 1e-6 * np.geomspace(0.1, 100, 4 if given.quick else 13)
     relay = Relay(Component(given.fmu), 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)

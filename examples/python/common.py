@@ -1,11 +1,8 @@
 """Command line of the examples, and their pictures. Copy it along with an example that imports it."""
 
 import argparse
-import os
-import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
 
 import matplotlib as mpl
 
@@ -18,11 +15,24 @@ from relay_contact import fmu_path
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def parser(description: str | None, **options: Any) -> argparse.ArgumentParser:  # noqa: ANN401
-    """Give a command line with the options that every example has; `read_arguments` reads it."""
-    line = argparse.ArgumentParser(description=description, **options)
+Bounded = tuple[float, float, float, str, str]
+"""A number of the command line: its default, least and greatest value, unit and meaning."""
+
+
+def parser(description: str | None, quick: str = "", takes: str = "", **bounded: Bounded) -> argparse.ArgumentParser:
+    """Give a command line with the options that every example has; `read_arguments` reads it.
+
+    `quick` says what is less with --quick, if that is an option; `bounded` are numbers that have to be in a range.
+    """
+    epilog = f"Takes {takes}." if takes else None
+    line = argparse.ArgumentParser(description=str(description).splitlines()[0], epilog=epilog)
     line.add_argument("--fmu", type=Path, default=fmu_path(), help="the component (%(default)s)")
     line.add_argument("--out", type=Path, default=ROOT / "out", help="folder for what is written (%(default)s)")
+    if quick:
+        line.add_argument("--quick", action="store_true", help=quick)
+    for name, (value, low, high, unit, text) in bounded.items():
+        told = f"{text} [{unit}], {low:g} to {high:g} (%(default)s)"
+        line.add_argument(f"--{name}", type=within(low, high, unit), default=value, help=told)
     return line
 
 
@@ -51,9 +61,3 @@ def save(figure: Figure, path: Path, dpi: int = 150) -> None:
     """Write a picture."""
     figure.savefig(path, dpi=dpi)
     plt.close(figure)
-
-
-def leave(code: int) -> NoReturn:
-    """End without the exit functions: that of PythonFMU 0.7.0 frees its state twice, which may end in an abort."""
-    sys.stdout.flush()
-    os._exit(code)

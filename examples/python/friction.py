@@ -18,6 +18,7 @@ from tqdm import tqdm
 
 from common import parser, read_arguments, save
 from relay_contact import Array, Component, Value, write_table
+from relay_contact.component import sine
 from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 
 FRICTION: dict[str, Value] = {"effects.friction": "Coulomb", "effects.axialForce": "None"}
@@ -126,13 +127,7 @@ class Study:
 
     def vibration(self, frequency: float, amplitude: float, values: dict[str, Value]) -> Vibration:
         """Start a vibration gently and give what a period of it has once it is steady."""
-        driven: dict[str, Value] = {
-            "effects.excitation": "Sine",
-            "excitation.frequency": frequency,
-            "excitation.amplitude": amplitude,
-            "excitation.riseTime": RISE,
-        }
-        with self.component.started(FRICTION | driven | values) as contact:
+        with self.component.started(FRICTION | sine(frequency, amplitude, RISE) | values) as contact:
             periods = np.arange(math.ceil((RISE + SETTLED) * frequency) + WATCHED + 1)
             names = ["step.minimumForce", "step.maximumForce", "contact.slipDistance", "friction.energy"]
             rows = contact.drive(periods / frequency, {}, names)
@@ -241,9 +236,7 @@ def draw(path: Path, frequencies: Array, responses: Array, loop: Array, slips: A
 
 def main() -> None:
     """Run the study."""
-    line = parser(str(__doc__).splitlines()[0], epilog="Takes about a minute.")
-    line.add_argument("--quick", action="store_true", help="few frequencies and levels")
-    given = read_arguments(line)
+    given = read_arguments(parser(__doc__, "few frequencies and levels", "about a minute"))
     study = Study(Component(given.fmu))
     quick = given.quick
     frequencies = [

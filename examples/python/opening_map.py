@@ -44,8 +44,7 @@ def draw(path: Path, frequencies: Array, accelerations: Array, lengths: Array) -
 
 def main() -> None:
     """Run the map."""
-    line = parser(str(__doc__).splitlines()[0], epilog="Takes about half a minute on two cores.")
-    line.add_argument("--quick", action="store_true", help="fewer points")
+    line = parser(__doc__, "fewer points", "about half a minute on two cores")
     line.add_argument("--workers", type=int, help="threads (one for each core)")
     line.add_argument("--tolerance", type=float, default=0.0, help="solver.tolerance (the component's)")
     given = read_arguments(line)

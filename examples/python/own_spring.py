@@ -178,16 +178,8 @@ def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response
     where = np.arange(len(rows))
     for shift, which, colour, label in ((-0.2, 0, BLUE, "modes"), (0.2, 1, ORANGE, "segments")):
         parts = [100 * row.deviations()[which] for row in rows]
-        bars.barh(where + shift, parts, 0.38, color=colour, label=label)
-        for y, part in zip(where + shift, parts, strict=True):
-            bars.text(
-                part,
-                y,
-                f" {percent(part / 100)} ",
-                va="center",
-                ha="left" if part >= 0 else "right",
-                fontsize="x-small",
-            )
+        drawn = bars.barh(where + shift, parts, 0.38, color=colour, label=label)
+        bars.bar_label(drawn, [percent(part / 100) for part in parts], padding=2, fontsize="x-small")
     bars.set_yticks(where, [row.name for row in rows], fontsize="small")
     bars.invert_yaxis()
     bars.margins(x=0.25)
@@ -213,9 +205,7 @@ def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response
 
 def main() -> None:
     """Solve, reduce, run and compare."""
-    line = parser(str(__doc__).splitlines()[0], epilog="Takes a minute or two.")
-    line.add_argument("--quick", action="store_true", help="elements of 1 mm instead of 0.4 mm, fewer frequencies")
-    given = read_arguments(line)
+    given = read_arguments(parser(__doc__, "elements of 1 mm instead of 0.4 mm, fewer frequencies", "a minute or two"))
     if lacking := missing():
         raise SystemExit(lacking)
     bar = tqdm(total=5, unit="stage", bar_format="{desc}: {n_fmt} of {total_fmt} [{elapsed}]")

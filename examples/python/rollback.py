@@ -179,9 +179,8 @@ def draw(runs: list[Run], path: Path) -> None:
 
 def main() -> int:
     """Run the three masters over tolerances and steps."""
-    line = parser("Adaptive master with FMU states. Takes half a minute, with --quick five seconds.")
-    line.add_argument("--quick", action="store_true", help="2.5 ms instead of 10 ms, fixed steps down to 0.5 µs only")
-    given = read_arguments(line)
+    text = "Adaptive master with FMU states. Takes half a minute, with --quick five seconds."
+    given = read_arguments(parser(text, "2.5 ms instead of 10 ms, fixed steps down to 0.5 µs only"))
     stop, lengths = (2.5 * PERIOD, FIXED[:-2]) if given.quick else (10 * PERIOD, FIXED)
     component = Component(given.fmu)
     settings = [("adaptive with events", REFERENCE), *(("fixed", length) for length in lengths)]

@@ -43,6 +43,19 @@ Value = float | str
 Values = Mapping[str, Value]
 
 
+def sine(frequency: float, amplitude: float, rise: float = 0.0) -> dict[str, Value]:
+    """Return the parameters of a vibration (Hz, m/s2) that rises (s), or starts at once, which may open a contact."""
+    return {
+        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude,
+        "excitation.riseTime": rise,
+    }  # fmt: skip
+
+
+def half_sine(amplitude: float, duration: float) -> dict[str, Value]:
+    """Return the parameters of a shock (m/s2, s)."""
+    return {"effects.excitation": "HalfSine", "excitation.amplitude": amplitude, "excitation.duration": duration}
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Give the end of a message about an unknown name: what it may have been meant to be."""
     near = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)

@@ -1,22 +1,22 @@
 """Friction between the contacts once more, by other means: the reference for `effects.friction`.
 
 Modes of the beam by Galerkin's method carry the contact force F and the friction force T of a contact point at a height
-above the spring. The motion is integrated by scipy's implicit Runge-Kutta method from one change to the next: of
-sticking to slipping and back, of closed to open. Every change is located, so that no step goes over one.
+above the spring. The motion is integrated by SUNDIALS CVODE from one change to the next: of sticking to slipping and
+back, of closed to open.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import Enum
 from math import copysign, pi, sqrt
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from component import STARTS
-from reference import Acceleration, Reference
+from one_sided import CLOSED, Law, System, shaking
+from reference import Reference
 from relay_contact import Array, Values
 
 MILLISECOND = 1e-3
@@ -35,26 +35,16 @@ class Phase(Enum):
 
 
 @dataclass(frozen=True)
-class Law:
+class Rubbing(Law):
     """Hertz's contact with damping, and friction on Mindlin's tangential spring with the same damping time."""
 
-    hertz: float
-    damping: float
     # Tangential over normal stiffness.
-    ratio: float
-    coefficient: float
-
-    def normal(self, d: float, rate: float) -> float:
-        """Contact force (N) of a closed contact, by indentation (m) and rate (m/s)."""
-        return self.hertz * sqrt(max(d, 0.0)) * (d + 1.5 * self.damping * rate)
-
-    def engagement(self, d: float, rate: float) -> float:
-        """Give what is positive while the contact is closed, m."""
-        return min(d, d + 1.5 * self.damping * rate)
+    ratio: float = 0.0
+    coefficient: float = 0.0
 
     def tangential_stiffness(self, d: float) -> float:
         """k_t, N/m."""
-        return 1.5 * self.ratio * self.hertz * sqrt(max(d, 0.0))
+        return 1.5 * self.ratio * self.stiffness * sqrt(max(d, 0.0))
 
     def trial(self, d: float, z: float, speed: float) -> float:
         """Friction force (N) if the contact sticks and moves along the spring at a speed (m/s)."""
@@ -85,7 +75,7 @@ class Law:
             excess, against = abs(moves) - grows, -speed
         else:
             trial = self.trial(d, z, speed)
-            excess, against = abs(trial) - self.coefficient * self.normal(d, rate), trial
+            excess, against = abs(trial) - self.coefficient * self.force(d, rate), trial
         return Phase(copysign(1.0, against)) if excess > 0 else Phase.STICK
 
 
@@ -105,8 +95,9 @@ class Frictional(Reference):
         ]
         modulus = 1 / sum((2 - nu) * 2 * (1 + nu) / e for e, nu in sides)  # G*
         self.tangential: float = 8 * modulus * sqrt(known["contact.curvatureRadius"] * max(self.indentation, 0.0))
-        normal = 1 / sum((1 - nu**2) / e for e, nu in sides)  # E*
-        self.friction = Law(self.factor, self.contact_damping, 4 * modulus / normal, known["friction.coefficient"])
+        # Tangential over normal stiffness, k_t / k_n = 4 G* / E*.
+        self.ratio = 4 * modulus * sum((1 - nu**2) / e for e, nu in sides)
+        self.coefficient: float = known["friction.coefficient"]
 
     def _unbalance(self, indentation: float) -> float:
         deflection = self.overtravel - indentation
@@ -138,9 +129,7 @@ class Frictional(Reference):
         modes = self.modes()
         # Hertz: the stiffness is as the cube root of the force.
         stiffness = self.tangent * (force / self.force) ** (1 / 3)
-        pushed = np.outer(
-            modes.tip + sign * self.friction.coefficient * self.height * modes.rotation, stiffness * modes.tip
-        )
+        pushed = np.outer(modes.tip + sign * self.coefficient * self.height * modes.rotation, stiffness * modes.tip)
         matrix = np.block(
             [
                 [np.zeros_like(pushed), np.eye(len(modes.tip))],
@@ -150,138 +139,109 @@ class Frictional(Reference):
         return complex(max(np.linalg.eigvals(matrix), key=lambda value: value.real))
 
 
-@dataclass
-class Piece:
-    """Motion in one phase."""
+class FrictionalMotion(System):
+    """Friction and slip: beside the motion are the deflection z, the distance slipped and the energy dissipated."""
 
-    begin: float
-    end: float
-    phase: Phase
-    at: Callable[[Any], Any] = field(repr=False)
-
-
-class FrictionalMotion:
-    """Contact force, friction force and slip over time."""
-
-    def __init__(self, relay: Frictional, acceleration: Acceleration, stop: float, tolerance: float) -> None:
-        """Integrate; the motion is `omega q` and `q'` of the modes, then z, distance slipped, energy dissipated."""
-        self.relay, self.law, self.modes, self.acceleration = relay, relay.friction, relay.modes(), acceleration
-        law, modes = self.law, self.modes
-        # Displacement along the spring by the modes, and the friction force at rest.
-        self.lever, self.held = relay.height * modes.rotation, relay.share * relay.force
-        self.n, self.omega = len(modes.tip), np.sqrt(modes.omega_squared)
-        n = self.n
+    def __init__(self, relay: Frictional, tolerance: float) -> None:
+        """Take a relay with its excitation."""
+        modes, self.relay = relay.modes(), relay
+        self.law = Rubbing("contact", -modes.tip, relay.factor, relay.contact_damping, 1.5, relay.overtravel,
+                           ratio=relay.ratio, coefficient=relay.coefficient)  # fmt: skip
+        super().__init__(modes.omega_squared, modes.damping, modes.participation, [self.law], *shaking(relay.values))
+        # Displacement along the spring by the modes.
+        self.near, self.lever, omega = [relay.indentation], relay.height * modes.rotation, np.sqrt(self.squares)
         # Velocity that the force scale gives the first mode in 1 / omega, and the deflection under Coulomb's limit.
-        loads = np.hypot(modes.tip, self.lever * law.coefficient)
-        scale = relay.force_scale * np.max(loads / self.omega)
-        deflection = -self.held / relay.tangential if relay.tangential > 0 else 0.0
-        short = max(law.limit_deflection(relay.indentation, 0.0), abs(deflection), 1e-9)
-        energy = max(law.coefficient * relay.force_scale * short, 1e-15)
-        self.short = short
-        self.floor = tolerance * np.concatenate([np.full(2 * n, scale), [short, short, energy]])
-        self.tolerance = tolerance
-        motion = np.concatenate([np.zeros(2 * n), [deflection, 0.0, 0.0]])
-        self.pieces: list[Piece] = []
-        time, phase = 0.0, self._closed(motion) if relay.force > 0 else Phase.OPEN
-        while time < stop:
-            piece, motion, change = self._piece(time, stop, phase, motion)
-            self.pieces.append(piece)
-            time = piece.end
-            if change == "slip":
-                d, _, _, speed = self.contact(motion)
-                trial = self.law.trial(d, motion[2 * n], speed)
-                phase = Phase(copysign(1.0, trial)) if phase is Phase.STICK else Phase.STICK
-            elif change == "contact":
-                motion[2 * n] = 0.0
-                phase = self._closed(motion) if phase is Phase.OPEN else Phase.OPEN
+        scale = relay.force_scale * np.max(np.hypot(modes.tip, self.lever * relay.coefficient) / omega)
+        self.deflection = -relay.share * relay.force / relay.tangential if relay.tangential > 0 else 0.0
+        self.short = max(self.law.limit_deflection(relay.indentation, 0.0), abs(self.deflection), 1e-9)
+        energy = max(relay.coefficient * relay.force_scale * self.short, 1e-15)
+        others = [self.short, self.short, energy]
+        self.relative, self.floor = tolerance, tolerance * np.concatenate([scale / omega, scale + 0 * omega, others])
+        self.phases: list[Phase] = []
+        """Phases one after another."""
+        self.depths: list[float] = []
+        """Indentations at closings, m."""
 
-    def contact(self, motion: Array) -> tuple[Any, Any, Any, Any]:
-        """Give indentation (m) and its rate (m/s), displacement along the spring and its rate."""
-        n, tip = self.n, self.modes.tip
-        q, v = (motion[:n].T / self.omega).T, motion[n : 2 * n]
-        return self.relay.indentation - tip @ q, -tip @ v, self.lever @ q, self.lever @ v
+    def bent(self, overlaps: Array) -> Array:
+        """Return the displacements under constant forces of contact and friction."""
+        friction = self.relay.share * self.law.elastic(float(overlaps[0]))
+        return np.asarray(super().bent(overlaps) + self.lever * friction / self.squares)
 
-    def _closed(self, motion: Array) -> Phase:
-        d, rate, _, speed = self.contact(motion)
-        return self.law.begins(d, rate, motion[2 * self.n], speed)
+    def contact(self, state: Array) -> tuple[float, float, float, float]:
+        """Give indentation (m) and its rate (m/s), deflection of the tangential spring and speed along the spring."""
+        q, v, others = self.split(state)
+        return self.law.overlap(0.0, q), self.law.rate(0.0, v), float(others[0]), float(self.lever @ v)
 
-    def forces(self, phase: Phase, motion: Array) -> tuple[float, float]:
-        """Contact force and friction force, N."""
-        if phase is Phase.OPEN:
-            return 0.0, 0.0
-        d, rate, _, speed = self.contact(motion)
-        force = self.law.normal(d, rate)
+    def friction(self, state: Array) -> float:
+        """Friction force, N."""
+        (d, rate, z, speed), phase = self.contact(state), self.phases[-1]
         if phase is Phase.STICK:
-            return force, self.law.trial(d, motion[2 * self.n], speed)
-        return force, phase.value * self.law.coefficient * force
+            return self.law.trial(d, z, speed)
+        return 0.0 if phase is Phase.OPEN else phase.value * self.law.coefficient * self.law.force(d, rate)
 
-    def _rates(self, phase: Phase, time: float, motion: Array) -> Array:
-        n, modes = self.n, self.modes
-        d, rate, _, speed = self.contact(motion)
-        force, friction = self.forces(phase, motion)
-        load = modes.tip * (force - self.relay.force) + self.lever * (friction - self.held)
-        load = load - modes.participation * self.acceleration(time)
-        deflects = self.law.deflects(phase, d, rate, motion[2 * n], speed)
-        slips = abs(speed - deflects) if phase in (Phase.FORTH, Phase.BACK) else 0.0
-        turns = load - self.omega * motion[:n] - modes.damping * motion[n : 2 * n]
-        return np.concatenate([self.omega * motion[n : 2 * n], turns, [deflects, slips, abs(friction) * slips]])
+    def further(self, state: Array, time: float) -> tuple[Array | float, Sequence[float]]:  # noqa: ARG002
+        """Return the friction force on the modes, and the derivatives of deflection, distance and energy."""
+        d, rate, z, speed = self.contact(state)
+        friction, deflects = self.friction(state), self.law.deflects(self.phases[-1], d, rate, z, speed)
+        slips = abs(speed - deflects) if self.phases[-1] in (Phase.FORTH, Phase.BACK) else 0.0
+        return self.lever * friction, [deflects, slips, abs(friction) * slips]
 
-    def _piece(self, begin: float, stop: float, phase: Phase, motion: Array) -> tuple[Piece, Array, str]:
-        """Go on to the next change, and say of what."""
-        law, z = self.law, 2 * self.n
+    def excess(self, state: Array) -> float:
+        """Give what is positive where it slips, m: by the trial force or, without damping, by the velocity."""
+        (d, rate, z, speed), phase, law = self.contact(state), self.phases[-1], self.law
+        if phase is not Phase.STICK and law.damping == 0:
+            return -float(phase.value) * (speed - law.deflects(phase, d, rate, z, speed)) * MILLISECOND
+        trial = -(z + law.damping * speed)
+        return float((abs(trial) if phase is Phase.STICK else phase.value * trial) - law.limit_deflection(d, rate))
 
-        def engaged(_time: float, motion: Array) -> float:
-            d, rate, _, _ = self.contact(motion)
-            return law.engagement(d, rate)
-
-        def excess(motion: Array) -> Any:  # noqa: ANN401
-            """Give what is positive where it slips, m: by the trial force or, without damping, by the velocity."""
-            d, rate, _, speed = self.contact(motion)
-            if phase is not Phase.STICK and law.damping == 0:
-                return -phase.value * (speed - law.deflects(phase, d, rate, motion[z], speed)) * MILLISECOND
-            trial = -(motion[z] + law.damping * speed)
-            return (abs(trial) if phase is Phase.STICK else phase.value * trial) - law.limit_deflection(d, rate)
-
+    def integrate(self, state: Array, phases: Sequence[int], middle: float) -> Any:  # noqa: ANN401
+        """Return a solver while nothing changes."""
         # A change is behind zero by what rounding leaves of the one before, so that the start is none.
-        behind, rounding = excess(motion), ROUNDING * self.short
-        behind = max(behind, 0.0) + rounding if phase is Phase.STICK else min(behind, 0.0) - rounding
+        behind, rounding = self.excess(state), ROUNDING * self.short
+        self.behind = max(behind, 0.0) + rounding if self.phases[-1] is Phase.STICK else min(behind, 0.0) - rounding
+        return super().integrate(state, phases, middle)
 
-        def slips(_time: float, motion: Array) -> float:
-            return float(excess(motion) - behind)
+    def ways(self, phases: Sequence[int]) -> list[int | None]:
+        """Add that of slip."""
+        slides = phases[0] == CLOSED and self.law.coefficient > 0
+        return [*super().ways(phases), (1 if self.phases[-1] is Phase.STICK else -1) if slides else None]
 
-        changes: list[Any] = [engaged] if phase is Phase.OPEN or law.coefficient == 0 else [engaged, slips]
-        engaged.terminal = slips.terminal = True  # type: ignore[attr-defined]
-        engaged.direction = 1 if phase is Phase.OPEN else -1  # type: ignore[attr-defined]
-        slips.direction = 1 if phase is Phase.STICK else -1  # type: ignore[attr-defined]
-        solution = solve_ivp(
-            lambda time, motion: self._rates(phase, time, motion),
-            (begin, stop),
-            motion,
-            method="Radau",
-            rtol=self.tolerance,
-            atol=self.floor,
-            dense_output=True,
-            events=changes,
-        )
-        assert solution.success, solution.message
-        events = zip(("contact", "slip"), solution.t_events, strict=False)
-        change = next((name for name, times in events if len(times)), "")
-        return Piece(begin, float(solution.t[-1]), phase, solution.sol), solution.y[:, -1].copy(), change
+    def watched(self, time: float, state: Array, phases: Sequence[int]) -> list[float]:
+        """Add slip."""
+        return [*super().watched(time, state, phases), self.excess(state) - self.behind]
 
-    def instants(self, before: set[Phase], after: set[Phase]) -> Array:
-        """Give the instants at which a phase among these changes to one among those."""
-        pairs = zip(self.pieces, self.pieces[1:], strict=False)
-        return np.array([late.begin for early, late in pairs if early.phase in before and late.phase in after])
+    def start(self, now: float) -> tuple[Array, list[int]]:
+        """Return the state at rest, held by the friction that closing left."""
+        state, phases = super().start(now)
+        self.along = float(self.lever @ state[: self.count])
+        state[2 * self.count] = self.deflection
+        self.phases = [self.law.begins(*self.contact(state)) if phases[0] == CLOSED else Phase.OPEN]
+        return state, phases
 
-    def outputs(self, times: Array) -> dict[str, Array]:
-        """Give the outputs of the component that depend on contact and friction, at increasing times."""
-        rows = []
-        ends = np.array([piece.end for piece in self.pieces])
-        for time in times:
-            piece = self.pieces[min(int(np.searchsorted(ends, time)), len(ends) - 1)]
-            motion = piece.at(time)
-            z = 0.0 if piece.phase is Phase.OPEN else motion[2 * self.n]
-            d, _, along, _ = self.contact(motion)
-            rows.append([*self.forces(piece.phase, motion), along - z, *motion[2 * self.n + 1 :], d])
-        names = ["contact.force", "contact.tangentialForce", "contact.slip", "contact.slipDistance", "friction.energy"]
-        return dict(zip([*names, "contact.indentation"], np.array(rows).T, strict=True))
+    def changed(
+        self, time: float, state: Array, phases: list[int], turns: Array, changes: dict[tuple[str, str], list[float]]
+    ) -> list[int]:
+        """Return the phases after those changes that were found; without contact the tangential spring is straight."""
+        after = super().changed(time, state, phases, turns[:-1], changes)
+        if CLOSED not in (phases[0], after[0]):
+            return after
+        if phases != after:
+            state[2 * self.count] = 0.0
+            self.phases.append(self.law.begins(*self.contact(state)) if after[0] == CLOSED else Phase.OPEN)
+            self.depths += [self.contact(state)[0]] if after[0] == CLOSED else []
+        else:
+            d, _, z, speed = self.contact(state)
+            slips = Phase(copysign(1.0, self.law.trial(d, z, speed)))
+            self.phases.append(slips if self.phases[-1] is Phase.STICK else Phase.STICK)
+        return after
+
+    def observed(self, state: Array) -> list[float]:
+        """Return friction force, slip, distance slipped and energy dissipated."""
+        q, _, (z, distance, energy) = self.split(state)
+        return [self.friction(state), float(self.lever @ q) - self.along - z, distance, energy]
+
+    def outputs(self, times: Array) -> tuple[dict[str, Array], dict[tuple[str, str], list[float]]]:
+        """Give the outputs of the component that depend on contact and friction, at increasing times, and changes."""
+        course = self.solve(times)
+        names = ["contact.tangentialForce", "contact.slip", "contact.slipDistance", "friction.energy"]
+        return {"contact.force": course.forces["contact"], **dict(zip(names, course.rows, strict=True))}, course.changes

@@ -18,20 +18,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from tqdm import tqdm
 
+import measured
 from component import COMPONENT
-from measured import (
-    GUESSED,
-    RINGING,
-    ROUGH,
-    ROUGH_GUESSED,
-    TRUTH,
-    exact,
-    files,
-    record,
-    rough_curve_records,
-    rough_frequency_record,
-    scattered,
-)
 from relay_contact import Array, Values
 from relay_contact.identification.measurement import Measurement, read
 from relay_contact.identification.prediction import Laboratory
@@ -43,7 +31,7 @@ CELLS = [(0.25, 1e4, 0.01), (0.1, 1e4, 0.01), *product((0.01, 1.0), (2e3, 5e4), 
 FEWEST = 10  # sets that determine a parameter, for a share
 
 laboratory = cache(lambda: Laboratory(COMPONENT))
-clean = cache(lambda: exact(TRUTH))
+clean = cache(lambda: measured.exact(measured.TRUTH))
 
 
 def errors(measurements: list[Measurement], true: dict[str, float], start: Values | None = None) -> Array:
@@ -64,24 +52,24 @@ def errors(measurements: list[Measurement], true: dict[str, float], start: Value
 
 def of_record(cell: tuple[float, float, float], seed: int) -> Array:
     """Return the errors by a static force and a ring-down of a length (s), rate (1/s) and scatter."""
-    return errors(record(*cell, seed), RINGING, GUESSED)
+    return errors(measured.record(*cell, seed), measured.RINGING, measured.GUESSED)
 
 
 def of_all(seed: int) -> Array:
     """Return the errors by measurements of all kinds."""
     with TemporaryDirectory() as folder:
-        paths = files(Path(folder), scattered(clean(), seed))
-        return errors([read(each, COMPONENT, ["contact closed"]) for each in paths.values()], TRUTH)
+        paths = measured.files(Path(folder), measured.scattered(clean(), seed))
+        return errors([read(each, COMPONENT, ["contact closed"]) for each in paths.values()], measured.TRUTH)
 
 
 def of_rough_frequencies(seed: int) -> Array:
     """Return the errors by frequencies of a rough contact over the overtravel."""
-    return errors(rough_frequency_record(seed), ROUGH, ROUGH_GUESSED)
+    return errors(measured.rough_frequency_record(seed), measured.ROUGH, measured.ROUGH_GUESSED)
 
 
 def of_rough_curves(seed: int) -> Array:
     """Return the errors by response curves of a rough contact at several overtravels."""
-    return errors(rough_curve_records(seed), ROUGH, ROUGH_GUESSED)
+    return errors(measured.rough_curve_records(seed), measured.ROUGH, measured.ROUGH_GUESSED)
 
 
 def shares(rows: Array) -> list[str]:
@@ -101,7 +89,7 @@ def main() -> None:
     line.add_argument("--sets", type=int, default=400, help="number of data sets in each row (%(default)s)")
     line.add_argument("--workers", type=int, default=2, help="processes (%(default)s)")
     given = line.parse_args()
-    print(f"| record | rows per second | scatter | {' | '.join(RINGING)} |\n|---|---|---|---|---|---|---|")
+    print(f"| record | rows per second | scatter | {' | '.join(measured.RINGING)} |\n|---|---|---|---|---|---|---|")
     with ProcessPoolExecutor(given.workers) as pool:
         for length, rate, noise in tqdm(CELLS):
             work = pool.map(partial(of_record, (length, rate, noise)), range(given.sets), chunksize=10)
@@ -109,7 +97,7 @@ def main() -> None:
             print(f"| {1e3 * length:g} ms | {rate:g} | {100 * noise:g} % | {told} |", flush=True)
         all_kinds = np.array(list(tqdm(pool.map(of_all, range(given.sets)), total=given.sets)))
         print(f"| all kinds | | | {' | '.join(shares(all_kinds))} |")
-        print(f"\n| rough contact | {' | '.join(ROUGH)} |\n|---|---|---|---|")
+        print(f"\n| rough contact | {' | '.join(measured.ROUGH)} |\n|---|---|---|---|")
         for of_rough, name in ((of_rough_frequencies, "frequencies"), (of_rough_curves, "response curves")):
             work = pool.map(of_rough, range(given.sets), chunksize=10)
             print(f"| {name} | {' | '.join(shares(np.array(list(tqdm(work, total=given.sets)))))} |", flush=True)

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from reference import Reference
-from relay_contact import Array, Values
+from relay_contact import Array, Value, Values
 from relay_contact.identification.measurement import FORCE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import FREQUENCY as FREQUENCIES
 
 TRUTH: dict[str, float] = {
     "contact.overtravel": 2.06e-4, "beam.youngsModulus": 1.2e11, "tip.mass": 2.4e-5, "beam.stiffnessDamping": 7.5e-5,
@@ -26,6 +27,7 @@ GUESSED = {name: value * part for (name, value), part in zip(RINGING.items(), (0
 """What its drawing says."""
 PRESSED = np.linspace(-1e-4, 2e-4, 13)
 CALIBRATION = 0.005
+CLOSED = "contact closed"
 SINCE = 0.02
 """Time (s) after a pluck at which its record begins: of the second vibration, 1 % of the first, exp(-7.6) is left."""
 
@@ -124,10 +126,9 @@ def record(length: float, rate: float, noise: float, seed: int) -> list[Measurem
     force = pressed() * gauge + SCATTER["force"] * pressed().max() * chance.standard_normal(len(PRESSED))
     time, motion = plucked(length, rate)
     motion = motion + noise * np.abs(motion).max() * chance.standard_normal(len(time))
-    none, place = np.array([]), "contact closed"
     return [
-        Measurement(Path("force.csv"), FORCE, PRESSED, "force", "N", force, none, place, False, CALIBRATION),
-        Measurement(Path("ring.csv"), RINGDOWN, time, "displacement", "m", motion, none, place, True, 0.0),
+        Measurement(Path("force.csv"), FORCE, PRESSED, "force", "N", force, position=CLOSED, calibration=CALIBRATION),
+        Measurement(Path("ring.csv"), RINGDOWN, time, "displacement", "m", motion, position=CLOSED, is_open=True),
     ]
 
 
@@ -154,32 +155,17 @@ def rough_curves() -> Array:
 
 def rough_frequency_record(seed: int, noise: float = 0.001) -> list[Measurement]:
     """Return frequencies over the overtravel with noise, as a part of the value."""
-    chance, none = np.random.default_rng(seed), np.array([])
-    values = rough_frequencies() * np.exp(noise * chance.standard_normal(len(OVERTRAVELS)))
-    return [
-        Measurement(
-            Path("frequency.csv"),
-            "frequency",
-            OVERTRAVELS,
-            "frequency",
-            "Hz",
-            values,
-            none,
-            "contact closed",
-            False,
-            0.0,
-        )
-    ]
+    values = rough_frequencies() * np.exp(noise * np.random.default_rng(seed).standard_normal(len(OVERTRAVELS)))
+    return [Measurement(Path("frequency.csv"), FREQUENCIES, OVERTRAVELS, "frequency", "Hz", values, position=CLOSED)]
 
 
 def rough_curve_records(seed: int) -> list[Measurement]:
     """Return response curves at several overtravels with SCATTER."""
     chance, one = np.random.default_rng(seed), np.ones(len(FREQUENCY))
-    return [
-        Measurement(
-            Path("response.csv"), RESPONSE, FREQUENCY, "force", "N",
-            curve * np.exp(SCATTER["response"] * chance.standard_normal(len(FREQUENCY))), one, "contact closed", False,
-            0.0, {"contact.overtravel": overtravel},
-        )
-        for overtravel, curve in zip(CURVES, rough_curves(), strict=True)
-    ]  # fmt: skip
+    found = []
+    for overtravel, curve in zip(CURVES, rough_curves(), strict=True):
+        values = curve * np.exp(SCATTER["response"] * chance.standard_normal(len(one)))
+        settings: dict[str, Value] = {"contact.overtravel": overtravel}
+        found.append(Measurement(Path("response.csv"), RESPONSE, FREQUENCY, "force", "N", values, one, CLOSED,
+                                 settings=settings))  # fmt: skip
+    return found

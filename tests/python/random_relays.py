@@ -9,13 +9,15 @@ located. The deviation is that of the contact force at communication points, rel
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from math import pi, sin
+from math import pi
 
 import numpy as np
 
 from component import COMPONENT, ROOT
-from reference import Reference, cvode
+from one_sided import shaking
+from reference import Reference
 from relay_contact import Array, RelayContactError, Value
+from relay_contact.component import sine
 
 MARKS = "<!-- independent: written by tests/python/random_relays.py -->", "<!-- end of independent -->"
 PERIODS, SAMPLES = 4, 50
@@ -77,39 +79,14 @@ def draw(number: int) -> Relay:
         level = between(1.5, 4.0) * abs(float(values["contact.overtravel"])) * (2 * pi * frequency) ** 2
     else:
         level = between(1.2, 3.0) * reference.force / abs(reference.force_response(frequency))
-    values |= {
-        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": min(level, 9e4),
-    }  # fmt: skip
-    return Relay(values, damping)
+    return Relay(values | sine(frequency, min(level, 9e4)), damping)
 
 
 def second(relay: Relay, functions: int) -> tuple[Array, int, float]:
     """Return contact forces (N) at the communication points, openings and closings, and the force scale (N)."""
     reference = Reference({**relay.values, "solver.modes": functions})
-    amplitude, omega = (float(relay.values[f"excitation.{name}"]) for name in ("amplitude", "frequency"))
-    omega *= 2 * pi
-
-    def contact(_time: float, deflection: float, rate: float) -> float:
-        return reference.law_force(reference.indentation - deflection, -rate)
-
-    equations = reference.equations(lambda time: amplitude * sin(omega * time), contact)
-
-    def engaged(_time: float, motion: Array) -> float:
-        deflection, rate = equations.tip(motion)
-        indentation = reference.indentation - deflection
-        return float(min(indentation, indentation - reference.power * reference.contact_damping * rate))
-
-    solver = cvode(equations.rates, engaged, [0], True, TOLERANCE, TOLERANCE * equations.scale)
-    motion, force, events = np.zeros(equations.size), [reference.force], 0
-    solver.init_step(relay.times[0], motion)
-    for time in relay.times[1:]:
-        # Anew from each opening and closing, as the order of the method holds for smooth forces alone.
-        while (found := solver.step(time)).t < time:
-            events += 1
-            solver.init_step(found.t, found.y)
-        deflection, rate = equations.tip(found.y)
-        force.append(contact(time, deflection, rate))
-    return np.array(force), events, reference.force_scale
+    course = reference.course(relay.times, shaking(reference.values)[0], TOLERANCE)
+    return course.forces["contact"], sum(map(len, course.changes.values())), reference.force_scale
 
 
 def own(relay: Relay, tolerance: float) -> Array:

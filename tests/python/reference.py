@@ -2,28 +2,23 @@
 
 Static and harmonic motions are exact: solutions of the boundary value problem, by a matrix exponential along the beam.
 In time the beam has modes by Galerkin's method. With a linear contact their motion is a matrix exponential too, with
-any other it is integrated by scipy's implicit Runge-Kutta method, or by SUNDIALS CVODE from one event to the next.
+any other it is integrated by SUNDIALS CVODE from one event to the next.
 Names and units are those of the component.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, sin, sqrt
 from typing import Any
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre, leggauss
-from scipy.integrate import solve_ivp
 from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
-from sksundae.cvode import CVODE
 
 from component import STARTS
+from one_sided import Acceleration, ClosedBy, Course, Law, System
 from relay_contact import Array, Values
-
-Acceleration = Callable[[float], float]
-# Force (N) on the tip by time, deflection and rate.
-Contact = Callable[[float, float, float], float]
 
 # Functions of Galerkin's method where solver.modes is not set. Where the beam is damped, the contact force of motion
 # without blows is then right to 1e-10 of its scale.
@@ -43,18 +38,6 @@ class Modes:
     participation: Array
     # Integrals of products of their slopes.
     slopes: Array
-
-
-@dataclass(frozen=True)
-class Equations:
-    """Equations of motion of the modes: of their displacements times the angular frequency, then their velocities."""
-
-    size: int
-    rates: Callable[[float, Array], Array]
-    # Deflection (m) of the tip and its rate by the motion.
-    tip: Callable[[Array], Any]
-    # What a tolerance of the motion is relative to, m/s.
-    scale: float
 
 
 def hertz(values: dict[str, Any], contact: str = "contact") -> float:
@@ -242,69 +225,23 @@ class Reference:
             force.append(self.force + to_force @ motion)
         return np.array(force)
 
-    def law_force(self, indentation: float, rate: float) -> float:
-        """Contact force, N."""
-        if self.law in ("Hertz", "Rough"):
-            pressed = max(indentation, 0.0)
-            stiffness = self.power * self.factor * pressed ** (self.power - 1)
-            force = stiffness * (pressed / self.power + self.contact_damping * rate)
-        else:
-            force = self.force + self.tangent * (indentation - self.indentation + self.contact_damping * rate)
-        return float(force if self.law == "Bonded" else max(force, 0.0))
+    def course(
+        self, times: Array, base: Acceleration, tolerance: float = 1e-12, *, speed: float = 0.0, limit: float = 0.0
+    ) -> Course:
+        """Solve the motion at increasing times, at rest at the first, for any contact law and axial force.
 
-    def motion(
-        self,
-        acceleration: Acceleration,
-        stop: float,
-        tolerance: float,
-        support_speed: float = 0.0,
-        max_step: float = np.inf,
-    ) -> Callable[[float], float]:
-        """Contact force (N) as a function of time, from rest at 0, for any contact law and axial force.
-
-        The fixed contact may come at a constant speed, m/s; the steps are limited where a blow could be stepped over.
+        The fixed contact may come at a constant speed, m/s; `limit` is a force (N) whose instants are noted.
         """
-
-        def contact(time: float, deflection: float, rate: float) -> float:
-            return self.law_force(self.indentation + support_speed * time - deflection, support_speed - rate)
-
-        equations = self.equations(acceleration, contact)
-        # Of a spring at rest the error is next to nothing.
-        with np.errstate(divide="ignore"):
-            solution = solve_ivp(
-                equations.rates,
-                (0.0, stop),
-                np.zeros(equations.size),
-                method="Radau",
-                rtol=tolerance,
-                atol=tolerance * equations.scale,
-                dense_output=True,
-                max_step=max_step,
-            )
-        assert solution.success, solution.message
-        return lambda time: contact(time, *equations.tip(solution.sol(time)))
-
-    def equations(self, acceleration: Acceleration, contact: Contact) -> Equations:
-        """Equations of motion of the tip from the preload, under a base acceleration and the force of the contact."""
-        modes = self.modes()
-        n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
-        preload = (modes.tip * self.force - modes.participation * self.gravity) / modes.omega_squared
-        follows = self.axial == "FromDeflection"
-
-        def of(motion: Array) -> Any:  # noqa: ANN401
-            return modes.tip @ (motion[:n].T / omega).T, modes.tip @ motion[n:]
-
-        def rates(time: float, motion: Array) -> Array:
-            q = motion[:n] / omega
-            load = modes.tip * (contact(time, *of(motion)) - self.force) - modes.participation * acceleration(time)
-            if follows:
-                change = self.axial_force_at(self.deflection + float(modes.tip @ q)) - self.axial_force
-                load = load + change * modes.slopes @ (preload + q)
-            return np.concatenate([omega * motion[n:], load - omega * motion[:n] - modes.damping * motion[n:]])
-
-        # Velocity that the force scale gives the first mode in 1 / omega.
-        scale = self.force_scale * abs(modes.tip[-1]) / omega.min()
-        return Equations(2 * n, rates, of, scale)
+        factor, power, offset, near = self.factor, self.power, self.overtravel, self.indentation
+        if self.law not in ("Hertz", "Rough"):
+            factor, power, near = self.tangent, 1.0, self.force / self.tangent
+            offset += near - self.indentation
+        by: dict[str, ClosedBy] = {"Bonded": "nothing", "Linearised": "force"}
+        row, closed_by = -self.modes().tip, by.get(self.law, "overlap")
+        contact = Law("contact", row, factor, self.contact_damping, power, offset, speed, 0.0, limit, closed_by)
+        spring = Spring(self, contact, near, base)
+        spring.relative, spring.floor = tolerance, 1e9 * tolerance * spring.floor
+        return spring.solve(times)
 
     def frequency_following(self) -> float:
         """Lowest natural frequency with the contact as a spring and the axial force following the deflection, Hz."""
@@ -317,43 +254,19 @@ class Reference:
         return float(sqrt(np.min(eig(matrix, right=False).real))) / (2 * pi)
 
 
-def cvode(
-    rates: Callable[[float, Array], Any],
-    events: Callable[[float, Array], Any],
-    directions: Sequence[int],
-    terminal: bool,
-    relative: float,
-    absolute: Any,  # noqa: ANN401
-) -> CVODE:
-    """Give a solver that locates where events change their signs, in these directions (0: in both), and may end there.
+class Spring(System):
+    """Modes of a spring with its contact, for any contact law and axial force."""
 
-    Rates and events are by time and state.
-    """
+    def __init__(self, relay: Reference, contact: Law, near: float, base: Acceleration) -> None:
+        """Take the contact with its overlap at rest (m)."""
+        self.relay, self.modes = relay, relay.modes()
+        super().__init__(self.modes.omega_squared, self.modes.damping, self.modes.participation, [contact], base)
+        self.pull, self.near = -relay.gravity * self.load, [near]
 
-    def into(time: float, state: Array, found: Array) -> None:
-        found[:] = rates(time, state)
-
-    def located(time: float, state: Array, found: Array) -> None:
-        found[:] = events(time, state)
-
-    located.direction, located.terminal = list(directions), [terminal] * len(directions)  # type: ignore[attr-defined]
-    return CVODE(
-        into, eventsfn=located, num_events=len(directions), rtol=relative, atol=absolute, max_num_steps=500_000
-    )
-
-
-def crossings(force: Callable[[float], float], limit: float, times: Array) -> tuple[Array, Array]:
-    """Give the instants at which a force falls to a limit and those at which it rises to it.
-
-    `times` are close enough to tell the instants apart.
-    """
-
-    def above(time: float) -> float:
-        return force(time) - limit
-
-    turns = np.diff([int(above(time) > 0) for time in times])
-
-    def located(turn: int) -> Array:
-        return np.array([brentq(above, times[n], times[n + 1], xtol=1e-13) for n in np.flatnonzero(turns == turn)])
-
-    return located(-1), located(1)
+    def further(self, state: Array, time: float) -> tuple[Array | float, Sequence[float]]:
+        """Return what the axial force adds that follows the deflection."""
+        if self.relay.axial != "FromDeflection":
+            return super().further(state, time)
+        q = state[: self.count]
+        change = self.relay.axial_force_at(float(self.modes.tip @ q)) - self.relay.axial_force
+        return change * self.modes.slopes @ q, [0.0]

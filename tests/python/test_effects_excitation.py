@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from component import run
-from reference import Acceleration, Reference
+from one_sided import Acceleration
+from reference import Reference
 from relay_contact import Array, Values
 
 BONDED: Values = {"effects.contactLaw": "Bonded", "effects.axialForce": "None", "excitation.amplitude": 98.0}

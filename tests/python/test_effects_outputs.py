@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from component import run
-from reference import Reference, crossings
+from one_sided import Course
+from reference import Reference
 from relay_contact import Array, Scene, Values
 from relay_contact import run as run_scene
 
@@ -143,16 +144,21 @@ def test_the_first_interruption_is_that_of_the_reference() -> None:
     tolerance, threshold, stop = 1e-8, 60.0, 1.1e-3
     values: Values = {**OPENING, "solver.tolerance": tolerance, "chatter.resistanceThreshold": threshold}
     reference = Reference(values)
-    motion = reference.motion(lambda time: 400 * np.sin(2 * pi * 1000 * time), stop, 1e-11)
     limit = reference.force_of_resistance(threshold)
-    (opening,), (closing,) = crossings(motion, limit, np.linspace(0, stop, 1101))
+
+    def course(*times: float) -> Course:
+        sine = 2 * pi * 1000
+        return reference.course(np.array([0.0, *times]), lambda time: 400 * np.sin(sine * time), limit=limit)
+
+    changes = course(stop).changes
+    (opening,), (closing,) = (changes["contact", way] for way in ("falls", "rises"))
     # Long communication steps do not matter.
     count, longest, total = (run(values, stop, stop, CHATTER)[name][-1] for name in CHATTER)
     assert count == 1
     assert longest == total
     # Instants are located to 1 ns; the error of the force over its slope is less.
-    slopes = [abs(motion(at + h) - motion(at)) / 1e-8 for at, h in ((opening, -1e-8), (closing, 1e-8))]
-    assert tolerance * FORCE_SCALE / min(slopes) < 1e-9
+    forces = course(opening - 1e-8, opening, closing, closing + 1e-8).forces["contact"]
+    assert tolerance * FORCE_SCALE / (np.abs(np.diff(forces[1:])[::2]).min() / 1e-8) < 1e-9
     assert longest == pytest.approx(closing - opening, rel=0, abs=1e-9)
 
 

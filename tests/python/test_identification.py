@@ -16,22 +16,7 @@ from scipy.stats import binom
 import measured
 from component import COMPONENT, ROOT
 from identification_coverage import of_all, of_record, of_rough_curves, of_rough_frequencies
-from measured import (
-    GUESSED,
-    OVERTRAVELS,
-    RINGING,
-    ROUGH,
-    ROUGH_GUESSED,
-    TRUTH,
-    exact,
-    files,
-    record,
-    rough,
-    rough_frequencies,
-    rough_frequency_record,
-    scattered,
-)
-from reference import Reference, crossings
+from reference import Reference
 from relay_contact import Array, RelayContactError, Values, identification
 from relay_contact.command import main
 from relay_contact.identification import Identification
@@ -42,7 +27,7 @@ from relay_contact.qualification import Relay
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 SEED = 1
-CLEAN = exact(TRUTH)
+CLEAN = measured.exact(measured.TRUTH)
 
 
 def found(*data: Path, relay: str | Path = "paper", **asked: Any) -> Identification:  # noqa: ANN401
@@ -57,7 +42,7 @@ def holds(result: Identification, label: str, true: float) -> bool:
 def test_what_a_laboratory_measures_gives_the_parameters(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    data = files(tmp_path, scattered(CLEAN, SEED))
+    data = measured.files(tmp_path, measured.scattered(CLEAN, SEED))
     monkeypatch.setattr("relay_contact.scene.PATIENCE", 1e-3)
     assert main(["identify", "paper", "--data", *map(str, data.values()), "--out", str(tmp_path / "found")]) == 0
     printed, progress = capsys.readouterr()
@@ -68,11 +53,11 @@ def test_what_a_laboratory_measures_gives_the_parameters(
     assert page.count("<svg") == 1
     assert (tmp_path / "found/identification.png").read_bytes().startswith(b"\x89PNG")
     relay = Relay.read(tmp_path / "found/paper.toml", COMPONENT)
-    assert set(relay.uncertainty) == set(TRUTH)
+    assert set(relay.uncertainty) == set(measured.TRUTH)
     # Its covariance, which `qualify` draws from.
     assert list(relay.correlation.names) == list(relay.uncertainty)
     assert np.abs(np.tril(relay.correlation.matrix, -1)).max() > 0.3
-    for name, true in TRUTH.items():
+    for name, true in measured.TRUTH.items():
         value = float(relay.positions["contact closed"][name])
         # By the information that the data have, their scatter known, 1.1 to 1.5 %, of the rivet 10.6 %: it is a small
         # part of the moved mass; half as much again for scatters that are estimated from 6 to 9 rows.
@@ -85,7 +70,7 @@ def test_intervals_hold_the_true_values_as_often_as_they_say() -> None:
     sets = 6
     inside = int((np.abs([of_all(seed) for seed in range(sets)]) <= 1).sum())
     # Fewer come once in a thousand times, if intervals are right and the parameters of a set independent.
-    assert inside >= binom.ppf(1e-3, sets * len(TRUTH), 0.95)
+    assert inside >= binom.ppf(1e-3, sets * len(measured.TRUTH), 0.95)
 
 
 RECORDS = ((0.01, 2e3, 0.05), (0.25, 1e4, 0.01), (1.0, 5e4, 0.001))
@@ -108,27 +93,27 @@ def test_intervals_of_a_parameter_hold_the_true_value(cell: Callable[[int], Arra
 def rough_files(folder: Path, values: Array) -> tuple[Path, Path]:
     """Write frequencies over the overtravel, and the file of a relay with a rough contact; give their paths."""
     data, relay = folder / "frequency.csv", folder / "relay.toml"
-    rows = [f"{1e3 * over:.9g},{value:.9g}" for over, value in zip(OVERTRAVELS, values, strict=True)]
+    rows = [f"{1e3 * over:.9g},{value:.9g}" for over, value in zip(measured.OVERTRAVELS, values, strict=True)]
     data.write_text("overtravel [mm],frequency [Hz]\n" + "\n".join(rows) + "\n")
-    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in ROUGH_GUESSED.items()))
+    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in measured.ROUGH_GUESSED.items()))
     return data, relay
 
 
 def test_the_frequency_of_a_rough_contact_is_that_of_the_exact_beam() -> None:
-    (record_,) = rough_frequency_record(SEED)
-    predicted = Laboratory(COMPONENT).predict(record_, {**ROUGH_GUESSED, **ROUGH})
+    (record_,) = measured.rough_frequency_record(SEED)
+    predicted = Laboratory(COMPONENT).predict(record_, {**measured.ROUGH_GUESSED, **measured.ROUGH})
     # Both solve the same equations; roots to 1e-14, the force by the small difference of two deflections.
-    assert predicted == pytest.approx(rough_frequencies(), rel=1e-10)
+    assert predicted == pytest.approx(measured.rough_frequencies(), rel=1e-10)
 
 
 def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_path: Path) -> None:
-    (record_,) = rough_frequency_record(SEED)
+    (record_,) = measured.rough_frequency_record(SEED)
     data, relay = rough_files(tmp_path, record_.values)
-    result = found(data, relay=relay, parameters=list(ROUGH), out=tmp_path / "found")
+    result = found(data, relay=relay, parameters=list(measured.ROUGH), out=tmp_path / "found")
     assert not result.missing
     written = Relay.read(tmp_path / "found/relay.toml", COMPONENT)
     (values,) = written.positions.values()
-    for name, true in ROUGH.items():
+    for name, true in measured.ROUGH.items():
         assert holds(result, name, true)
         assert values[name] == pytest.approx(true, rel=written.parts(COMPONENT)[name])
     # Without names the law is sought too, as the file has a rough contact; what frequencies do not tell is said.
@@ -140,7 +125,9 @@ def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_pat
 
 def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
     """The frequencies of a contact with a larger exponent than the component allows; and a start at the end."""
-    steep = np.array([rough(each, contact_stiffnessExponent=0.94).frequency() for each in OVERTRAVELS])
+    steep = np.array(
+        [measured.rough(each, contact_stiffnessExponent=0.94).frequency() for each in measured.OVERTRAVELS]
+    )
     for start in (0.5, 0.9):
         data, relay = rough_files(tmp_path, steep)
         relay.write_text(relay.read_text().replace("stiffnessExponent = 0.5", f"stiffnessExponent = {start}"))
@@ -150,8 +137,8 @@ def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
 
 
 def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
-    (record_,) = rough_frequency_record(SEED)
-    data, relay = rough_files(tmp_path, record_.values[:1] * np.linspace(0.999, 1.001, len(OVERTRAVELS)))
+    (record_,) = measured.rough_frequency_record(SEED)
+    data, relay = rough_files(tmp_path, record_.values[:1] * np.linspace(0.999, 1.001, len(measured.OVERTRAVELS)))
     lines = data.read_text().splitlines()
     head, rows = lines[0], [f"0.04,{line.split(',')[1]}" for line in lines[1:]]
     data.write_text("\n".join([head, *rows]) + "\n")
@@ -166,7 +153,7 @@ def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
 def asked(tmp_path: Path, measurements: list[Measurement]) -> Identification:
     """Identify the relay of a record from near values."""
     relay = tmp_path / "relay.toml"
-    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in GUESSED.items()))
+    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in measured.GUESSED.items()))
     paths = []
     for each in measurements:
         paths.append(tmp_path / each.path)
@@ -174,12 +161,12 @@ def asked(tmp_path: Path, measurements: list[Measurement]) -> Identification:
         head = f"# calibration = {each.calibration}\n{over},{each.quantity}\n"
         rows = (f"{x!r},{y!r}" for x, y in zip(each.over.tolist(), each.values.tolist(), strict=True))
         paths[-1].write_text(head + "\n".join(rows) + "\n")
-    return found(*paths, relay=relay, parameters=list(RINGING))
+    return found(*paths, relay=relay, parameters=list(measured.RINGING))
 
 
 @pytest.mark.parametrize("calibration", [0.005, 0.1])
 def test_a_frequency_does_not_tell_a_stiffness_that_the_mass_leaves_open(tmp_path: Path, calibration: float) -> None:
-    force, ring = record(0.25, 1e4, 0.01, SEED)
+    force, ring = measured.record(0.25, 1e4, 0.01, SEED)
     force = replace(force, calibration=calibration)
     alone, both = asked(tmp_path, [force]), asked(tmp_path, [force, ring])
     name = "beam.youngsModulus"
@@ -193,7 +180,7 @@ def test_a_frequency_does_not_tell_a_stiffness_that_the_mass_leaves_open(tmp_pat
 
 def test_a_response_of_the_open_spring_does_not_tell_masses_and_stiffness(tmp_path: Path) -> None:
     """The motion relative to the frame stays the same where all three are larger by the same part."""
-    spring = Reference({**TRUTH, **measured.AWAY})
+    spring = Reference({**measured.TRUTH, **measured.AWAY})
     frequency = np.linspace(150.0, 500.0, 15)
     chance = np.random.default_rng(SEED)
     gain = np.abs([spring.compliances(2 * np.pi * f, 0.0)[1] for f in frequency])
@@ -203,7 +190,7 @@ def test_a_response_of_the_open_spring_does_not_tell_masses_and_stiffness(tmp_pa
     names = ["beam.youngsModulus", "beam.density", "tip.mass"]
     result = found(data, parameters=[*names, "beam.stiffnessDamping"])
     assert len(result.missing.keys() & set(names)) == 1
-    assert holds(result, "beam.stiffnessDamping", TRUTH["beam.stiffnessDamping"])
+    assert holds(result, "beam.stiffnessDamping", measured.TRUTH["beam.stiffnessDamping"])
 
 
 def pole(values: Values) -> Array:
@@ -224,7 +211,7 @@ def pole(values: Values) -> Array:
 @pytest.mark.parametrize("is_open", [True, False])
 def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -> None:
     none, laboratory = np.zeros(1), Laboratory(COMPONENT)
-    ring = Measurement(Path("ring.csv"), "ring-down", none, "force", "N", none, none, "", is_open, 0.0)
+    ring = Measurement(Path("ring.csv"), "ring-down", none, "force", "N", none, is_open=is_open)
     chance = np.random.default_rng(SEED)
     for _ in range(20):
         values: Values = {
@@ -242,13 +229,13 @@ def test_a_ring_down_that_is_sampled_too_coarsely_is_refused(tmp_path: Path) -> 
     for rate, message in ((400.0, r"rings at 177 Hz, by the relay's file at 2\d\d Hz, with 400 rows per second: too"),
                           (225.0, "is 225 rows per second enough"), (500.0, "too coarse")):  # fmt: skip
         with pytest.raises(RelayContactError, match=message):
-            asked(tmp_path, record(0.25, rate, 0.01, SEED))
+            asked(tmp_path, measured.record(0.25, rate, 0.01, SEED))
     with pytest.raises(RelayContactError, match=r"a record of 0.00\d+ s: not allowed, allowed is 0.00\d+ s or more"):
-        asked(tmp_path, record(0.005, 1e4, 0.001, SEED))
+        asked(tmp_path, measured.record(0.005, 1e4, 0.001, SEED))
 
 
 def test_wrong_units_are_told_by_column(tmp_path: Path) -> None:
-    force, ring = record(0.25, 1e4, 0.01, SEED)
+    force, ring = measured.record(0.25, 1e4, 0.01, SEED)
     for wrong, message in (
         (
             [replace(force, values=100 * force.values)],
@@ -264,7 +251,7 @@ def test_wrong_units_are_told_by_column(tmp_path: Path) -> None:
 
 
 def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Path) -> None:
-    ring = files(tmp_path, scattered(CLEAN, SEED))["ring"]
+    ring = measured.files(tmp_path, measured.scattered(CLEAN, SEED))["ring"]
     names = ["beam.youngsModulus", "tip.mass", "beam.stiffnessDamping"]
     result = found(ring, parameters=names)
     (label,) = result.missing
@@ -272,14 +259,14 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     assert "the data tell it only together with" in result.missing[label]
     # With the true mass the frequency tells the stiffness: of a beam with a rivet, by the exact solution.
     relay = tmp_path / "relay.toml"
-    relay.write_text(f"parameters.tip.mass = {TRUTH['tip.mass']}\nuncertainty.tip.mass = 0.1\n")
+    relay.write_text(f"parameters.tip.mass = {measured.TRUTH['tip.mass']}\nuncertainty.tip.mass = 0.1\n")
     result = found(ring, relay=relay, parameters=names)
     assert list(result.missing) == ["tip.mass"]
-    assert holds(result, "beam.youngsModulus", TRUTH["beam.youngsModulus"])
+    assert holds(result, "beam.youngsModulus", measured.TRUTH["beam.youngsModulus"])
     # It is uncertain by as much as the mass that moves is: frequency 293 Hz, by 10 % of the rivet.
-    stiff = {"beam.youngsModulus": TRUTH["beam.youngsModulus"], **measured.AWAY}
+    stiff = {"beam.youngsModulus": measured.TRUTH["beam.youngsModulus"], **measured.AWAY}
     frequencies = [
-        Reference({**stiff, "tip.mass": TRUTH["tip.mass"] * part}).modes().omega_squared for part in (1, 1.1)
+        Reference({**stiff, "tip.mass": measured.TRUTH["tip.mass"] * part}).modes().omega_squared for part in (1, 1.1)
     ]
     moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
@@ -291,9 +278,8 @@ def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:
     for speed in speeds:
         relay = Reference({"contact.damping": true, "contact.overtravel": -1e-6})
         stop = 1e-6 / speed + 6e-5
-        force = relay.motion(lambda _: 0.0, stop, 1e-6, speed, 5e-6)
-        opened, closed = crossings(force, 1e-9, np.arange(0.0, stop, 1e-6))
-        lengths.append(closed[1] - opened[0])
+        changes = relay.course(np.array([0.0, stop]), lambda _: 0.0, speed=speed).changes
+        lengths.append(changes["contact", "closes"][1] - changes["contact", "leaves"][0])
     noise = np.exp(0.02 * np.random.default_rng(SEED).standard_normal(len(speeds)))
     data = tmp_path / "bounce.csv"
     rows = [f"{1e3 * speed};{1e6 * length}" for speed, length in zip(speeds, lengths * noise, strict=True)]
@@ -307,15 +293,15 @@ def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:
 
 
 def test_an_instrument_that_may_be_wrong_widens_the_intervals(tmp_path: Path) -> None:
-    values = scattered(CLEAN, SEED)
-    path = files(tmp_path, {**values, "force": 1.015 * values["force"]})["force"]
+    values = measured.scattered(CLEAN, SEED)
+    path = measured.files(tmp_path, {**values, "force": 1.015 * values["force"]})["force"]
     names = ["beam.youngsModulus"]
     relay = tmp_path / "relay.toml"
-    relay.write_text(f"parameters.contact.overtravel = {TRUTH['contact.overtravel']}\n")
-    assert not holds(found(path, relay=relay, parameters=names), names[0], TRUTH[names[0]])
+    relay.write_text(f"parameters.contact.overtravel = {measured.TRUTH['contact.overtravel']}\n")
+    assert not holds(found(path, relay=relay, parameters=names), names[0], measured.TRUTH[names[0]])
     path.write_text("# calibration = 0.02\n" + path.read_text())
     result = found(path, relay=relay, parameters=names)
-    assert holds(result, names[0], TRUTH[names[0]])
+    assert holds(result, names[0], measured.TRUTH[names[0]])
     # The gauge is wrong by 2 % with 95 % confidence, and the force is in proportion to the stiffness; scatter adds.
     assert result[names[0]].half == pytest.approx(0.02, rel=0.15)
 
@@ -392,7 +378,7 @@ def test_values_are_put_into_a_file_however_its_lines_are_ordered(text: str) -> 
 
 
 def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> None:
-    data = files(tmp_path, CLEAN)["force"]
+    data = measured.files(tmp_path, CLEAN)["force"]
     for asked, message in (
         ({"parameters": ["tip.mas"]}, "tip.mas: no such variable; did you mean tip.mass"),
         ({"parameters": ["spring.thickness"]}, "spring.thickness: no such entry in the spring file"),
@@ -406,6 +392,6 @@ def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> N
     open_relay = tmp_path / "open.toml"
     text = (ROOT / "relays/paper.toml").read_text().replace("contact.overtravel = 0.2e-3", "contact.overtravel = -1e-4")
     open_relay.write_text(text)
-    closed = files(tmp_path, CLEAN)["response"]
+    closed = measured.files(tmp_path, CLEAN)["response"]
     with pytest.raises(RelayContactError, match=r"the contact is open \(contact.overtravel = -0.0001 m\): not allowed"):
         found(closed, relay=open_relay, parameters=["tip.mass"])

@@ -30,7 +30,7 @@ from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
-from relay_contact.qualification.response import margin, respond
+from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import Monitor
 from relay_contact.qualification.trials import Specimen, pieces, steady
 from relay_contact.qualification.words import failures, passes_text
@@ -159,14 +159,12 @@ def test_verdict_margin_and_text_agree(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(positions, "DRAWS", 64)
     relay = drawn(100 + seed, 0.02)
     generator = np.random.default_rng(seed)
-    tests: list[Asked] = [SINE, SHOCK, RANDOM]
-    (values,) = relay.positions.values()
-    response = respond(COMPONENT, values, CONTACTS.threshold)
-    tests = [
-        scaled(test, margin(response, test, CONTACTS.opening) * generator.choice([0.9, 0.999, 1.001, 1.1]))
-        for test in tests
-    ]
-    for whole in judged(relay, tmp_path, *tests):
+    tests = SINE, SHOCK, RANDOM
+    position = positions.Position(COMPONENT, relay, "closed", CONTACTS, tests, relay.models[0])
+    margins = [position.linear(position.specimen.response, test) for test in tests]
+    levels = generator.choice([0.9, 0.999, 1.001, 1.1], len(tests))
+    near = [scaled(test, margin * level) for test, margin, level in zip(tests, margins, levels, strict=True)]
+    for whole in judged(relay, tmp_path, *near):
         for finding in whole.models:
             coherent(finding)
             assert whole.verdict == finding.verdict

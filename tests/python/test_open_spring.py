@@ -7,6 +7,7 @@ import pytest
 
 from component import ROOT
 from relay_contact import Array, Component, Values
+from relay_contact.component import half_sine
 
 SPRING = ROOT / "scenes" / "springs" / "tapered-cube-modes.toml"
 AMPLITUDE, DURATION = 1e3, 2e-3  # m/s2, s
@@ -30,10 +31,8 @@ def displacement(time: Array) -> Array:
 @pytest.mark.parametrize("step", [1e-5, 1e-4, 2e-4, 1e-3, 1e-2])
 def test_the_motion_read_does_not_depend_on_the_communication_step(step: float) -> None:
     values: Values = {"contact.overtravel": -3e-3, "beam.stiffnessDamping": 0.0, "beam.file": str(SPRING)}
-    blow: Values = {"effects.excitation": "HalfSine", "excitation.amplitude": AMPLITUDE}
-    blow = {**blow, "excitation.duration": DURATION}
     time: Array = step * np.arange(round(1e-2 / step) + 1.0)
-    with Component().started({**values, **blow}) as contact:
+    with Component().started({**values, **half_sine(AMPLITUDE, DURATION)}) as contact:
         read = contact.drive(time, {}, ["tip.displacement"])["tip.displacement"]
     free = time[1:] > DURATION
     # The tolerance is 1e-6 of the force that bends the spring by the overtravel, 3 mm.

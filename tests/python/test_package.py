@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 
-from component import COMPONENT, FMU, ROOT, STARTS
-from relay_contact import Component, Contact, RelayContactError, Scene, run, scenes
+from component import COMPONENT, FMU, ROOT
+from relay_contact import Component, Contact, RelayContactError, Scene, run
 from relay_contact.command import main
 
 
@@ -84,13 +84,6 @@ def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
         Component(other)
     with pytest.raises(RelayContactError, match=r"is missing: build it with"):
         Component(str(tmp_path / "none.fmu"))
-
-
-def test_every_scene_names_known_variables() -> None:
-    for name in scenes():
-        scene = Scene.read(name)
-        assert set(scene.values) <= STARTS.keys() | {"contact.current", "support.displacement", "base.acceleration"}
-        assert all(COMPONENT.name(output) == output for output in scene.outputs)
 
 
 def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) -> None:

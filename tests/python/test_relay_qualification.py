@@ -7,6 +7,7 @@ import pytest
 
 from component import COMPONENT
 from relay_contact import Values
+from relay_contact.component import half_sine, sine
 from relay_contact.qualification import Assessment, Relay, qualify
 from relay_contact.qualification.excitation import Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
@@ -116,11 +117,7 @@ def test_what_holds_the_armature_makes_no_other_part_weaker() -> None:
 
 def leaves(values: Values, frequency: float, level: float, step: float) -> bool:
     """Return whether a steady vibration, gently raised, takes the armature from its core, by small steps."""
-    sine: Values = {
-        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": level,
-        "excitation.riseTime": 12 / frequency,
-    }  # fmt: skip
-    with COMPONENT.started({**values, **sine}) as contact, contact.explained():
+    with COMPONENT.started({**values, **sine(frequency, level, 12 / frequency)}) as contact, contact.explained():
         contact.step(0.0, 12 / frequency)
         count = round(6 / frequency / step)
         rows = contact.drive(12 / frequency + step * np.arange(count + 1.0), {}, ["step.minimumStopForce"])
@@ -152,8 +149,7 @@ def test_the_weakest_frequency_is_that_of_brute_force() -> None:
 @pytest.mark.parametrize("restitution", [0.1, 0.4, 1.0])
 def test_the_forces_of_the_stops_are_those_of_the_component(restitution: float) -> None:
     """That of the core in small steps, and that of the rest stop by the motion of the armature."""
-    shaken: Values = {**WEAK, "armature.stopRestitution": restitution, "effects.excitation": "Sine",
-                      "excitation.frequency": 700.0, "excitation.amplitude": 10.0}  # fmt: skip
+    shaken: Values = {**WEAK, "armature.stopRestitution": restitution, **sine(700.0, 10.0)}
     core, stop = (all_parts(COMPONENT, shaken)[name] for name in (CORE, STOP))
     step = 1e-6
     with COMPONENT.started(shaken) as contact:
@@ -187,9 +183,8 @@ def test_a_shock_takes_an_armature_from_its_stop_where_small_steps_do(duration: 
     stop = all_parts(COMPONENT, values)[STOP]
 
     def left(factor: float) -> bool:
-        course: Values = {"effects.excitation": "HalfSine", "excitation.duration": duration,
-                          "excitation.amplitude": factor * 10.0 * G, "coil.relativeCurrent": 0.0}  # fmt: skip
-        with COMPONENT.started({**values, **course}) as contact:
+        shock = half_sine(factor * 10.0 * G, duration)
+        with COMPONENT.started({**values, **shock, "coil.relativeCurrent": 0.0}) as contact:
             rows = contact.drive(2e-6 * np.arange(2 * duration / 2e-6), {}, stop.outputs)
         return bool(stop.force(rows).min() <= 0)
 

@@ -10,7 +10,6 @@ from relay_contact import RelayContactError
 from relay_contact.qualification import Relay, Standard
 from relay_contact.qualification.excitation import Shock
 from relay_contact.qualification.position import Position
-from relay_contact.qualification.response import margin
 
 SEGMENTS = ROOT / "scenes/springs/tapered-cube.toml"
 MODES = ROOT / "scenes/springs/tapered-cube-modes.toml"
@@ -68,7 +67,7 @@ def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
     (name,) = relay.positions
     test = Shock("slow", "", "from memory", 20.0, 0.1)
     position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts, (test,), relay.models[0])
-    own = margin(position.specimen.response, test, position.specimen.lasting)
+    own = position.linear(position.specimen.response, test)
     chance = position.chance(test, position.margins(test, own), own)
     effects = chance.effects
     # The mass that the spring carries beside its own is not as thick.

@@ -72,19 +72,13 @@ def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, 
         ("travel [um],force [cN],force [N]\n", ":1: column force: there twice"),
         ("time,displacement,velocity\n0,1,1\n", "columns displacement and velocity: not allowed, allowed is one"),
         ("force 12\nno table\n", "csv: no line with the names of the columns"),
-        (
-            "travel,level\n",
-            ":1: columns travel, level: no measurement that is known; there are static force: travel",
-        ),
+        ("travel,level\n", ":1: columns travel, level: no measurement that is known; there are static force: travel"),
         (HEAD + "0,1\n1,x\n", ":3: column force: x: not allowed, allowed is a number"),
         (HEAD + "0,1\n1,nan\n", ":3: column force: nan cN: not allowed, allowed is a finite number"),
         (HEAD + "0,1\n1\n", ":3: 1 values: not allowed, allowed is 2, one in each column"),
         (HEAD + ROWS, ":5: 4 rows: not allowed, allowed is 5 or more for a static force"),
         ("frequency,level\n-3,1\n", ":2: column frequency: -3 Hz: not allowed, allowed is more than 0 Hz"),
-        (
-            "time,displacement\n0,1\n0,2\n",
-            ":3: column time: 0 s: not allowed, allowed is more than in the row before",
-        ),
+        ("time,displacement\n0,1\n0,2\n", ":3: column time: 0 s: not allowed, allowed is more than in the row before"),
         ("# positon = a\n" + HEAD + ROWS + "4,5\n", ":1: positon: unknown; did you mean position"),
         ("# position = b\n" + HEAD + ROWS + "4,5\n", ":1: position = b: not allowed, allowed is a"),
         ("# calibration = 2 %\n" + HEAD + ROWS + "4,5\n", ":1: calibration = 2 %: not allowed, allowed is 0 to 1"),
@@ -146,10 +140,7 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (
-            "time [ms],base.acceleration [mm]\n0,1\n",
-            "column base.acceleration: unit mm: not allowed, allowed is m/s2",
-        ),
+        ("time [ms],base.acceleration [mm]\n0,1\n", "column base.acceleration: unit mm: not allowed, allowed is m/s2"),
         ("time,base.aceleration [g]\n0,1\n", "column base.aceleration: unknown; did you mean base.acceleration"),
         ("time,level\n0,1\n", "columns time, level: not allowed, allowed is time and one or more of base.acceleration"),
         ("base.acceleration [g],x\n0,1\n", "columns base.acceleration, x: not allowed, allowed is time and"),

@@ -17,16 +17,7 @@ import numpy as np
 
 from relay_contact.component import Array, Component, Value
 from relay_contact.files import RelayContactError
-from relay_contact.tables import (
-    ACCELERATIONS,
-    FORCES,
-    FREQUENCIES,
-    LENGTHS,
-    TIMES,
-    VELOCITIES,
-    Table,
-    Units,
-)
+from relay_contact.tables import ACCELERATIONS, FORCES, FREQUENCIES, LENGTHS, TIMES, VELOCITIES, Table, Units
 from relay_contact.tables import read as read_table
 
 FORCE, RINGDOWN, RESPONSE, CHATTER = "static force", "ring-down", "frequency response", "chatter level"
@@ -71,12 +62,12 @@ class Measurement:
     unit: str
     """Of the quantity as it was measured."""
     values: Array
-    acceleration: Array
+    acceleration: Array = field(default_factory=lambda: np.zeros(0))
     """Amplitude of the base (m/s2) of a frequency response, else empty."""
-    position: str
-    is_open: bool
+    position: str = ""
+    is_open: bool = False
     """Whether the contact was taken away from the spring."""
-    calibration: float
+    calibration: float = 0.0
     """Of the instrument: by which part its values may be wrong, all alike, with 95 % confidence."""
     settings: dict[str, Value] = field(default_factory=dict)
     """Parameters of the component."""

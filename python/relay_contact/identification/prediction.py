@@ -10,17 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import hankel
 
-from relay_contact.component import Array, Component, Contact, Values
+from relay_contact.component import Array, Component, Contact, Values, half_sine, sine
 from relay_contact.files import RelayContactError
-from relay_contact.identification.measurement import (
-    BOUNCE,
-    CHATTER,
-    FORCE,
-    FREQUENCY,
-    RESPONSE,
-    RINGDOWN,
-    Measurement,
-)
+from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.qualification.level import threshold
 from relay_contact.qualification.response import EXACT, FREE, interrupting_force, respond
 from relay_contact.qualification.standards import Contacts
@@ -126,12 +118,8 @@ class Laboratory:
         self.contact.begin_anew(values)
         (frequency,) = self.contact.real("preload.frequency")
         rest = self.contact.real(name)[0]
-        knock: Values = {
-            "effects.excitation": "HalfSine",
-            "excitation.amplitude": part * abs(self.overtravel(values)) * (2 * np.pi * frequency) ** 2,
-            "excitation.duration": 0.5 / frequency,
-        }
-        self.contact.begin_anew({**values, **knock})
+        size = part * abs(self.overtravel(values)) * (2 * np.pi * frequency) ** 2
+        self.contact.begin_anew({**values, **half_sine(size, 0.5 / frequency)})
         step = 1 / frequency / DENSITY
         instants = 1 / frequency + step * np.arange(SAMPLES)
         motion = self.contact.drive(np.append(0.0, instants), {}, [name])[name] - rest
@@ -164,12 +152,7 @@ class Laboratory:
         amplitude = WEAK * abs(self.overtravel(values)) * (2 * np.pi * natural) ** 2
         found = []
         for frequency in map(float, frequencies):
-            sine: Values = {
-                "effects.excitation": "Sine",
-                "excitation.frequency": frequency,
-                "excitation.amplitude": amplitude,
-            }
-            self.contact.begin_anew({**values, **sine})
+            self.contact.begin_anew({**values, **sine(frequency, amplitude)})
             found.append(self.steady(name, frequency) / amplitude)
         return np.array(found), rest
 

@@ -10,15 +10,7 @@ import numpy as np
 from relay_contact.component import Array, Component, nearest
 from relay_contact.files import RelayContactError, read_toml
 from relay_contact.identification.fit import STEP, Fit, Set, Unknown
-from relay_contact.identification.measurement import (
-    BOUNCE,
-    CHATTER,
-    FORCE,
-    FREQUENCY,
-    RESPONSE,
-    RINGDOWN,
-    Measurement,
-)
+from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
 from relay_contact.spring import PREFIX, STIFFNESS, known

@@ -67,10 +67,7 @@ more. Another pulse that meets the spectrum may be more severe for the contact."
     "Record": """the margin is a factor on the whole record. The component is run around its largest dips of force or
 gap by linear theory, with the times and values of the file.""",
 }
-PUSHERS = {
-    "Prescribed": "pusher that stays where it is",
-    MOVED: "armature that moves a pusher",
-}
+PUSHERS = {"Prescribed": "pusher that stays where it is", MOVED: "armature that moves a pusher"}
 """By effects.pusher."""
 SETTINGS = ("excitation.", "chatter.", "solver.")
 """Parameters that are not the relay's."""

@@ -12,25 +12,15 @@ import numpy as np
 
 from relay_contact.component import Array, Component, Values
 from relay_contact.many import side_by_side
-from relay_contact.qualification import statistics
+from relay_contact.qualification import statistics, trials
 from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, quantile
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.level import ROUGHLY, threshold
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
-from relay_contact.qualification.response import CALM, Response, answers, margin, spread
+from relay_contact.qualification.response import CALM, Response, answers, spread
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.standards import Contacts
-from relay_contact.qualification.trials import (
-    APART,
-    Piece,
-    Specimen,
-    middle_dip,
-    noise_dips,
-    pieces,
-    sine_least,
-    sine_tried,
-)
 from relay_contact.spring import is_entry
 
 MODEL = "model"
@@ -138,41 +128,47 @@ class Position:
         return answers(self.component, {**self.values, **changes}, self.contacts.threshold, self.rest, calm)
 
     @cached_property
-    def specimen(self) -> Specimen:
+    def specimen(self) -> trials.Specimen:
         """The relay as the file says, to judge the part."""
         if not self.shared.nominal:
             self.shared.nominal |= self.responses({}, CALM)
-        return Specimen(self.component, self.values, self.contacts, self.shared.nominal[self.part], self.part)
+        return trials.Specimen(self.component, self.values, self.contacts, self.shared.nominal[self.part], self.part)
 
     @cached_property
-    def pieces(self) -> dict[str, dict[str, list[Piece]]]:
+    def pieces(self) -> dict[str, dict[str, list[trials.Piece]]]:
         """Of each course, by the test's name and its directions: as a whole, or what is around its largest dips."""
         return {
-            test.name: {way: pieces(self.specimen, test.course(), sign) for way, sign in test.directions.items()}
+            test.name: {way: trials.pieces(self.specimen, test.course(), sign) for way, sign in test.directions.items()}
             for test in self.tests if isinstance(test, Transient)
         }  # fmt: skip
 
     @cached_property
-    def noises(self) -> dict[str, tuple[list[Piece], float]]:
+    def noises(self) -> dict[str, tuple[list[trials.Piece], float]]:
         """Of each noise, by the test's name: what is around its largest dips, and what clipping makes of its level."""
-        return {test.name: noise_dips(self.specimen, test) for test in self.tests if isinstance(test, Random)}
+        return {test.name: trials.noise_dips(self.specimen, test) for test in self.tests if isinstance(test, Random)}
 
     def is_endless(self, test: Test) -> bool:
         """Return whether a test hardly shakes the part."""
         return self.linear(self.specimen.response, test) >= MOST
 
     def linear(self, response: Response, test: Test) -> float:
-        """Return the margin by linear theory, of a course by its pieces; MOST at most."""
+        """Return the margin by linear theory, MOST at most: of noise by a chance of one half, of courses by pieces."""
         if response.reserve <= 0:
             return 0.0
         lasting = self.specimen.lasting
-        if isinstance(test, Transient):
-            found = [
-                response.course(piece.course, test.directions[way], lasting)
-                for way, own in self.pieces[test.name].items() for piece in own
-            ]  # fmt: skip
-            return min(*found, MOST)
-        return min(margin(response, test, lasting), MOST)
+        match test:
+            case Sine():
+                found = [float(response.sine(test, lasting)[1].min())]
+            case Random():
+                found = [response.random(test, lasting)]
+            case Transient():
+                found = [
+                    response.course(piece.course, test.directions[way], lasting)
+                    for way, own in self.pieces[test.name].items() for piece in own
+                ]  # fmt: skip
+            case _:
+                raise TypeError(test)
+        return min(*found, MOST)
 
     def scores(self, draws: int) -> Array:
         """Return independent scores of the uncertain parameters for which the component answers, in columns.
@@ -272,12 +268,12 @@ class Position:
     @cached_property
     def weakest(self) -> dict[str, tuple[float, float, list[str]]]:
         """Of each sine, by the test's name: the frequency (Hz) that fails at the least level, its factor, and what."""
-        return {test.name: sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
+        return {test.name: trials.sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
 
     @cached_property
-    def middle(self) -> dict[str, tuple[float, list[str], Piece]]:
+    def middle(self) -> dict[str, tuple[float, list[str], trials.Piece]]:
         """Of each noise, by the test's name: at which part of linear theory it fails, what fails, and the dip."""
-        return {name: middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
+        return {name: trials.middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
 
     def turn(self, test: Test, number: int, expected: float) -> float:
         """Return the logarithm of the level that fails in the component in a draw by that of linear theory.
@@ -298,7 +294,7 @@ class Position:
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             beside = 1.0 if test.steps else self.weakest[test.name][0] / nominal
             frequency = float(np.clip(first * beside, *test.band))
-            tried = sine_tried(specimen, test, frequency)
+            tried = trials.sine_tried(specimen, test, frequency)
         else:
             if isinstance(test, Random):
                 piece, sign = self.middle[test.name][2], 1.0
@@ -350,7 +346,7 @@ class Position:
             for number in range(count):
                 if matter[number]:
                     turns[number, ::2] = [self.turn(test, 1 + at + number, middle) - middle for at in (count, 0)]
-                elif abs(middle) > APART:
+                elif abs(middle) > trials.APART:
                     # It may matter far from linear theory alone.
                     turns[number] = (self.turn(test, 1 + number, middle) - middle) * np.array((-1.0, 0.0, 1.0))
             expected = told(surface.scores[-len(drawn) :])

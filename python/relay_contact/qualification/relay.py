@@ -7,27 +7,13 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
+from relay_contact import schema
 from relay_contact.component import Component, Value, Values, nearest
 from relay_contact.files import RelayContactError, by_name, digest, found, named, read_toml
 from relay_contact.qualification import distributions
 from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.parts import check_held
 from relay_contact.qualification.standards import Contacts, Monitor
-from relay_contact.schema import (
-    Nested,
-    Place,
-    Positive,
-    Share,
-    Table,
-    at,
-    dotted,
-    exact,
-    leaves,
-    line,
-    read,
-    refused,
-    variables,
-)
 from relay_contact.spring import PREFIX, is_entry, known_of
 
 OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
@@ -50,36 +36,36 @@ NORMAL = "normal"
 """The axis of base acceleration along the motion of the contact."""
 
 
-class CoilPosition(Table):
+class CoilPosition(schema.Table):
     """A position of the coil."""
 
     name: Annotated[str, Field(min_length=1)] | None = None
-    parameters: Nested
+    parameters: schema.Nested
 
 
-class Rival(Table):
+class Rival(schema.Table):
     """One of the models by which a relay is judged."""
 
     name: Annotated[str, Field(min_length=1)] | None = None
-    parameters: Nested
-    uncertainty: Share = 0.0
+    parameters: schema.Nested
+    uncertainty: schema.Share = 0.0
 
 
-class Surfaces(Table):
+class Surfaces(schema.Table):
     """What is known of the surfaces of the contacts."""
 
-    roughness: Positive | None = None
+    roughness: schema.Positive | None = None
 
 
-class Content(Table):
+class Content(schema.Table):
     """Contents of the file of a relay."""
 
     title: str | None = None
-    parameters: Nested
+    parameters: schema.Nested
     pusher: dict[str, Any] | None = None
     armature: dict[str, Any] | None = None
     position: Annotated[list[CoilPosition], Field(min_length=1, default_factory=lambda: [CoilPosition(parameters={})])]
-    uncertainty: Nested
+    uncertainty: schema.Nested
     correlation: Correlation = Correlation()
     model: Annotated[list[Rival], Field(min_length=1, default_factory=lambda: [Rival(parameters={})])]
     monitor: Monitor = Monitor()
@@ -132,39 +118,39 @@ class Relay:
     def read(cls, relay: str | Path, component: Component) -> "Relay":
         """Read a relay by its name, such as "paper", or a file of one's own by its path."""
         path = named("relay", relay, relays())
-        content = read(path, Content)
+        content = schema.read(path, Content)
         shared = {**parameters(path, content.parameters, ("parameters",), component), **moved(path, content, component)}
         positions: dict[str, Values] = {}
         for number, each in enumerate(content.position):
-            place: Place = ("position", number)
+            place: schema.Place = ("position", number)
             name = each.name or f"position {number + 1}"
             if name in positions:
-                raise refused(path, (*place, "name"), name, "given twice")
+                raise schema.refused(path, (*place, "name"), name, "given twice")
             positions[name] = {**shared, **parameters(path, each.parameters, (*place, "parameters"), component)}
-            with at(path, *place):
+            with schema.at(path, *place):
                 # Parameters that do not fit together.
                 blow(component, positions[name])
                 check_held(component, positions[name])
             needed = OF_THE_POSITION[0]
             if content.armature is not None and needed not in positions[name]:
                 text = f"parameters.{needed}: missing, allowed is 1 at nominal current, 0 without current"
-                raise RelayContactError(f"{path}:{line(path, place)}: {dotted(place)}.{text}")
+                raise RelayContactError(f"{path}:{schema.line(path, place)}: {schema.dotted(place)}.{text}")
         uncertainty = uncertainties(path, content.uncertainty, positions, component)
         for number, name in enumerate(content.correlation.names):
             if name not in uncertainty:
                 allowed = f"allowed are the names in [uncertainty]{nearest(name, uncertainty)}"
-                raise refused(path, ("correlation", "names", number), name, allowed)
+                raise schema.refused(path, ("correlation", "names", number), name, allowed)
         models: dict[str, Model] = {}
         for number, rival in enumerate(content.model):
             place = ("model", number)
             name = rival.name or ("as described" if len(content.model) == 1 else f"model {number + 1}")
             if name in models:
-                raise refused(path, (*place, "name"), name, "given twice")
+                raise schema.refused(path, (*place, "name"), name, "given twice")
             changed = parameters(path, rival.parameters, (*place, "parameters"), component)
             if twin := next((each.name for each in models.values() if each.parameters == changed), None):
-                raise refused(path, place, name, f"has the parameters of {twin}")
+                raise schema.refused(path, place, name, f"has the parameters of {twin}")
             models[name] = Model(name, changed, rival.uncertainty)
-            with at(path, *place):
+            with schema.at(path, *place):
                 for values in positions.values():
                     blow(component, {**values, **changed})
                     check_held(component, {**values, **changed})
@@ -189,16 +175,16 @@ def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> Non
             raise RelayContactError(f"{name}: {text} {apart:g} Ohm while it is open")
 
 
-def parameters(path: Path, table: dict[str, Any], place: Place, component: Component) -> Values:
+def parameters(path: Path, table: dict[str, Any], place: schema.Place, component: Component) -> Values:
     """Return the parameters in a table of a relay's file, and the inputs that belong to it."""
-    for name, keys, value in leaves(table):
+    for name, keys, value in schema.leaves(table):
         if name.startswith(OF_THE_TEST):
-            raise refused(path, (*place, *keys), value, "the tests of a standard set it, not the relay")
+            raise schema.refused(path, (*place, *keys), value, "the tests of a standard set it, not the relay")
         group = name.partition(".")[0]
         if place == ("parameters",) and (group in TABLES or name == "effects.pusher"):
             where = f"its place is the table [{group}]" if group in TABLES else "the tables [pusher], [armature] say it"
-            raise refused(path, (*place, *keys), value, where)
-    return variables(path, table, place, component, inputs=OF_THE_POSITION)
+            raise schema.refused(path, (*place, *keys), value, where)
+    return schema.variables(path, table, place, component, inputs=OF_THE_POSITION)
 
 
 def moved(path: Path, content: Content, component: Component) -> dict[str, Value]:
@@ -210,16 +196,18 @@ def moved(path: Path, content: Content, component: Component) -> dict[str, Value
             tables[name] = own
     if not tables:
         return {}
-    found = variables(path, tables, (), component, inputs=OF_THE_POSITION)
+    found = schema.variables(path, tables, (), component, inputs=OF_THE_POSITION)
     if "armature" in tables and "pusher" not in tables:
-        raise RelayContactError(f"{path}:{line(path, ('armature',))}: pusher: missing, by which the armature moves it")
-    file = {name: value for name, _, value in leaves(content.parameters)}.get("beam.file", "")
+        raise RelayContactError(
+            f"{path}:{schema.line(path, ('armature',))}: pusher: missing, by which the armature moves it"
+        )
+    file = {name: value for name, _, value in schema.leaves(content.parameters)}.get("beam.file", "")
     by_modes = bool(file) and "mode" in read_toml(path.resolve().parent / str(file))
     for name, own in tables.items():
         # With start values that nobody chose a verdict would be that of another relay.
         for entry in NEEDED[name]:
             if entry not in own and not (by_modes and name == "pusher"):
-                raise RelayContactError(f"{path}:{line(path, (name,))}: {name}.{entry}: missing")
+                raise RelayContactError(f"{path}:{schema.line(path, (name,))}: {name}.{entry}: missing")
     kind = "Armature" if "armature" in tables else "Prescribed"
     return {"effects.pusher": kind} | found
 
@@ -230,16 +218,16 @@ def participations(path: Path, axis: str, own: list[float], positions: dict[str,
     for values in positions.values():
         if values.get("fixed.file") or values.get("effects.pusher", "None") != "None":
             text = "further axes are those of the moving contact's spring alone, without other parts"
-            raise refused(path, ("axes", axis), own, text)
+            raise schema.refused(path, ("axes", axis), own, text)
         file = str(values.get("beam.file", ""))
         modes = read_toml(Path(file)).get("mode", []) if file else []
         if axis == NORMAL or len(modes) != len(own):
             text = f"allowed is one participation for each of the {len(modes)} modes in the spring file"
-            raise refused(path, ("axes", axis), own, "the spring file has it" if axis == NORMAL else text)
+            raise schema.refused(path, ("axes", axis), own, "the spring file has it" if axis == NORMAL else text)
         for number, (mode, part) in enumerate(zip(modes, own, strict=True), 1):
             if not mode["participation"]:
                 text = f"mode {number} has none in the spring file, of which this is a factor"
-                raise refused(path, ("axes", axis, number - 1), part, text)
+                raise schema.refused(path, ("axes", axis, number - 1), part, text)
             found[f"{PREFIX}mode.{number}.participation"] = part / mode["participation"]
     return found
 
@@ -248,29 +236,29 @@ def uncertainties(
     path: Path, table: dict[str, Any], positions: dict[str, Values], component: Component
 ) -> dict[str, Distribution]:
     """Return the uncertainties of a relay's file by name; each changes something in one position at least."""
-    found: dict[str, tuple[Place, Distribution]] = {}
-    for name, keys, part in leaves(table):
+    found: dict[str, tuple[schema.Place, Distribution]] = {}
+    for name, keys, part in schema.leaves(table):
         place = ("uncertainty", *keys)
-        with at(path, *place):
+        with schema.at(path, *place):
             if is_entry(name):
                 for values in positions.values():
                     allowed = known_of(values)
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
-                        raise RelayContactError(f"{dotted(place)}: {text}")
+                        raise RelayContactError(f"{schema.dotted(place)}: {text}")
             elif name in OF_THE_POSITION:
                 pass
-            elif component.variables[exact(component, name, "parameter")].type != "Real":
-                raise RelayContactError(f"{dotted(place)}: not a real parameter")
+            elif component.variables[schema.exact(component, name, "parameter")].type != "Real":
+                raise RelayContactError(f"{schema.dotted(place)}: not a real parameter")
         if name in found:
-            raise refused(path, place, part, "given twice")
+            raise schema.refused(path, place, part, "given twice")
         try:
             found[name] = place, distributions.read(part)
         except ValueError as error:
-            raise refused(path, place, part, str(error)) from error
+            raise schema.refused(path, place, part, str(error)) from error
     rest = {name: blow(component, values) for name, values in positions.items()} if found else {}
     for name, (place, distribution) in found.items():
-        with at(path, *place):
+        with schema.at(path, *place):
             used = [distribution.part == 0]
             for position, values in positions.items():
                 start = component.value(values, name)
@@ -278,7 +266,9 @@ def uncertainties(
                 for end in ends:
                     used.append(blow(component, values, {name: float(end)}) != rest[position])
             if not any(used):
-                raise RelayContactError(f"{dotted(place)}: not used, {name} changes nothing in this relay, or it is 0")
+                raise RelayContactError(
+                    f"{schema.dotted(place)}: not used, {name} changes nothing in this relay, or it is 0"
+                )
     return {name: distribution for name, (_, distribution) in found.items()}
 
 

@@ -22,7 +22,7 @@ from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.files import RelayContactError
 from relay_contact.qualification.distributions import below
-from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine, Test, Transient
+from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine
 from relay_contact.qualification.parts import CONTACT, Part, Rest, at_rest, parts
 
 PHASES = 1024
@@ -303,19 +303,3 @@ def interrupting_force(law: list[float], threshold: float) -> float:
     """Return the contact force (N) at which the resistance is the threshold, by the power law."""
     coefficient, exponent = law
     return float((coefficient / threshold) ** (1 / exponent))
-
-
-def margin(response: Response, test: Test, opening: float) -> float:
-    """Return the factor of the level of a test that fails, that is, interrupts or closes the contact for a time (s).
-
-    In random vibration it does so within the test with a chance of one half.
-    """
-    match test:
-        case Sine():
-            return float(response.sine(test, opening)[1].min())
-        case Random():
-            return response.random(test, opening)
-        case Transient():
-            course = test.course()
-            return min(response.course(course, sign, opening) for sign in test.directions.values())
-    raise TypeError(test)

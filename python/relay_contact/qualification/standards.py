@@ -9,16 +9,7 @@ from pydantic.dataclasses import dataclass
 
 from relay_contact import records
 from relay_contact.files import HERE, RelayContactError, by_name, digest, named
-from relay_contact.qualification.excitation import (
-    Evidence,
-    History,
-    Random,
-    Shock,
-    Sine,
-    Spectrum,
-    Test,
-    weakest_evidence,
-)
+from relay_contact.qualification import excitation
 from relay_contact.schema import STRICT, Positive, Table, at, read, refused, within
 from relay_contact.tables import ACCELERATIONS
 
@@ -44,7 +35,7 @@ class Contacts:
     voltage: Annotated[float, within(1e-6, 1e4)]
     current: Annotated[float, within(1e-9, 1e4)]
     clause: str
-    evidence: Evidence | dict[str, Evidence]
+    evidence: excitation.Evidence | dict[str, excitation.Evidence]
 
     def monitored(self, monitor: Monitor) -> "Contacts":
         """Return the limits with another monitor."""
@@ -56,9 +47,9 @@ class Contacts:
         return self.voltage / self.current
 
     @property
-    def weakest_evidence(self) -> Evidence:
+    def weakest_evidence(self) -> excitation.Evidence:
         """Return the weakest evidence of any number."""
-        return weakest_evidence(self.evidence)
+        return excitation.weakest_evidence(self.evidence)
 
 
 class Recorded(Table):
@@ -72,15 +63,15 @@ class Recorded(Table):
     reversed: Annotated[bool, Field(strict=True)] = False
     axis: str = ""
     clause: str = ""
-    evidence: Evidence = "measured"
+    evidence: excitation.Evidence = "measured"
 
-    def tests(self, folder: Path) -> list[History]:
+    def tests(self, folder: Path) -> list[excitation.History]:
         """Return a test for each channel."""
         path = folder / self.file
         found = records.read(path, self.channel, self.unit, self.rate)
         name = self.name or path.name
         return [
-            History(
+            excitation.History(
                 f"{name}, {each.channel}" if len(found) > 1 else name, self.clause or f"{path.name}, {each.channel}",
                 self.evidence, axis=self.axis, record=each, both=self.reversed,
                 digest=digest(each.time.tobytes() + each.acceleration.tobytes()),
@@ -94,10 +85,10 @@ class Content(Table):
 
     title: str | None = None
     contacts: Contacts
-    sine: Annotated[list[Sine], Field(default_factory=list)]
-    random: Annotated[list[Random], Field(default_factory=list)]
-    shock: Annotated[list[Shock], Field(default_factory=list)]
-    spectrum: Annotated[list[Spectrum], Field(default_factory=list)]
+    sine: Annotated[list[excitation.Sine], Field(default_factory=list)]
+    random: Annotated[list[excitation.Random], Field(default_factory=list)]
+    shock: Annotated[list[excitation.Shock], Field(default_factory=list)]
+    spectrum: Annotated[list[excitation.Spectrum], Field(default_factory=list)]
     history: Annotated[list[Recorded], Field(default_factory=list)]
 
 
@@ -107,7 +98,7 @@ class Standard:
 
     title: str
     contacts: Contacts
-    tests: tuple[Test, ...]
+    tests: tuple[excitation.Test, ...]
     digest: str = ""
     """Of the file."""
 
@@ -116,7 +107,7 @@ class Standard:
         """Read a standard by its name, such as "MIL-PRF-28776", or a file of one's own by its path."""
         path = named("standard", standard, standards())
         content = read(path, Content)
-        tests: list[Test] = []
+        tests: list[excitation.Test] = []
         for kind in KINDS:
             for number, entry in enumerate(getattr(content, kind)):
                 with at(path, kind, number):

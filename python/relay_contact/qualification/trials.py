@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from relay_contact.component import Array, Component, Contact, Values
+from relay_contact.component import Array, Component, Contact, Values, sine
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
@@ -118,12 +118,8 @@ class Specimen:
         """The outputs that tell force and gap, and what was left of them in a step."""
         least = ["step.minimumForce", "step.minimumGap"][: len(self.monitors)]
         first = ["contact.indentation"] if self.is_open else ["contact.force", "second.force", *least]
-        return list(dict.fromkeys([*first, *self.watched_of_held]))
-
-    @cached_property
-    def watched_of_held(self) -> list[str]:
-        """The outputs that tell what was left of the forces that hold parts."""
-        return [name for part in self.held for name in ([part.least] if part.least else part.outputs)]
+        held = [name for part in self.held for name in ([part.least] if part.least else part.outputs)]
+        return list(dict.fromkeys([*first, *held]))
 
     def observed(self, rows: dict[str, Array]) -> Array:
         """Return columns of the force (N) of the closed contact less that of the open one, and what is left of each.
@@ -182,12 +178,8 @@ def vibrated(
     """Return what `steady` does, and `Specimen.ahead`."""
     settling = max(2.0, specimen.response.settling() * frequency)
     rising, steadily = (int(np.ceil(part * settling)) for part in start)
-    sine: Values = {
-        "effects.excitation": "Sine", "excitation.frequency": frequency, "excitation.amplitude": amplitude,
-        "excitation.riseTime": rising / frequency,
-    }  # fmt: skip
     time = (rising + steadily) / frequency
-    with specimen.start(sine) as contact, contact.explained():
+    with specimen.start(sine(frequency, amplitude, rising / frequency)) as contact, contact.explained():
         contact.step(0.0, time)
 
         def totals() -> dict[str, float]:
