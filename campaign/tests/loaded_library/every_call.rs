@@ -62,77 +62,49 @@ fn calls() -> Vec<Call> {
                 .map(|variable| (variable.reference, variable.start))
                 .collect();
             for count in [0, 1] {
-                calls.push(Call::Get {
+                calls.push(Call::Get(
                     kind,
-                    references: references[..count.min(references.len())].to_vec(),
+                    references[..count.min(references.len())].to_vec(),
                     fault,
-                });
-                calls.push(Call::Set {
-                    kind,
-                    values: values[..count.min(values.len())].to_vec(),
-                    fault,
-                });
+                ));
+                calls.push(Call::Set(kind, values[..count.min(values.len())].to_vec(), fault));
             }
         }
         for slot in [0, 1] {
-            calls.push(Call::GetState { slot, fault });
-            calls.push(Call::SetState { slot, fault });
-            calls.push(Call::FreeState { slot, fault });
-            calls.push(Call::StateSize { slot, fault });
-            calls.push(Call::Serialize { slot, fault });
+            calls.push(Call::GetState(slot, fault));
+            calls.push(Call::SetState(slot, fault));
+            calls.push(Call::FreeState(slot, fault));
+            calls.push(Call::StateSize(slot, fault));
+            calls.push(Call::Serialize(slot, fault));
             for damage in [Damage::None, Damage::Flip(500), Damage::Cut(60), Damage::Longer(0)] {
-                calls.push(Call::Deserialize { slot, damage, fault });
+                calls.push(Call::Deserialize(slot, damage, fault));
             }
         }
         for function in StatusFunction::ALL {
             for kind in [0, 1, 2, 3, 4, u32::MAX] {
-                calls.push(Call::Status { function, kind, fault });
+                calls.push(Call::Status(function, kind, fault));
             }
         }
         for known in ["logStatusError", "logEverything"] {
             let categories = vec![Some(known.to_owned())];
-            calls.push(Call::SetDebugLogging {
-                on: true,
-                categories,
-                fault,
-            });
+            calls.push(Call::SetDebugLogging(true, categories, fault));
         }
-        calls.push(Call::SetDebugLogging {
-            on: true,
-            categories: vec![None],
-            fault,
-        });
-        calls.push(Call::SetDebugLogging {
-            on: false,
-            categories: vec![],
-            fault,
-        });
+        calls.push(Call::SetDebugLogging(true, vec![None], fault));
+        calls.push(Call::SetDebugLogging(false, vec![], fault));
         for count in [0, 1] {
-            calls.push(Call::SetInputDerivatives {
-                values: vec![(input, 1, 3.0); count],
-                fault,
-            });
-            calls.push(Call::GetOutputDerivatives {
-                values: vec![(force, 1); count],
-                fault,
-            });
+            calls.push(Call::SetInputDerivatives(vec![(input, 1, 3.0); count], fault));
+            calls.push(Call::GetOutputDerivatives(vec![(force, 1); count], fault));
         }
     }
     calls
 }
 
 fn set_derivative(reference: u32, order: i32, value: f64) -> Call {
-    Call::SetInputDerivatives {
-        values: vec![(reference, order, value)],
-        fault: Fault::None,
-    }
+    Call::SetInputDerivatives(vec![(reference, order, value)], Fault::None)
 }
 
 fn get_derivative(reference: u32, order: i32) -> Call {
-    Call::GetOutputDerivatives {
-        values: vec![(reference, order)],
-        fault: Fault::None,
-    }
+    Call::GetOutputDerivatives(vec![(reference, order)], Fault::None)
 }
 
 /// Wrong values, references and communication points.
@@ -188,7 +160,7 @@ fn wrong_numbers() -> Vec<Call> {
         Point::At(f64::INFINITY),
         Point::At(f64::NEG_INFINITY),
     ] {
-        calls.push(Call::DoStep { point, size: 1e-5 });
+        calls.push(Call::DoStep(point, 1e-5));
     }
     for number in strange {
         calls.push(Call::SetupExperiment {
@@ -285,14 +257,7 @@ fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_err
         ],
         &[Call::step(1e-5), Call::step(1e-9), Call::set_reals(vec![(0, 1.0)])],
         &[Call::Terminate, Call::Terminate, Call::step(1e-5)],
-        &[
-            Call::DoStep {
-                point: Point::Off(-1.0),
-                size: 1e-5,
-            },
-            Call::step(1e-5),
-            Call::Terminate,
-        ],
+        &[Call::DoStep(Point::Off(-1.0), 1e-5), Call::step(1e-5), Call::Terminate],
     ];
     for case in cases {
         let mut judge = Judge::new(&LIBRARY);
