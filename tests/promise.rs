@@ -3,13 +3,12 @@
 //! relay at a thousandth of its tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
 //! others, at the tightest tolerance.
 
-use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, RealOutput};
 use testing::promise::{Judged, Outcome, compare, compare_all, judge, judge_all, tighten};
-use testing::relays::{Relay, after};
-use testing::scenes::{at_rest, largest_difference, shaken, tip_stiffness};
+use testing::relays::{Course, Relay, after};
+use testing::scenes::{accelerated, at_rest, largest_difference, shaken, supported, tip_stiffness};
 use testing::{kinds, parts};
 
 /// Relays judged.
@@ -95,20 +94,9 @@ fn the_force_after_a_knot_is_within_the_tolerance() {
     };
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 3.2e-6, 1e-6, 1e-7] {
         scene.solver.tolerance = tolerance;
-        let relay = Relay {
-            scene: scene.clone(),
-            knots: values
-                .windows(2)
-                .flat_map(steps)
-                .map(|(value, slope)| Inputs {
-                    base_acceleration: value,
-                    base_acceleration_rate: slope / size,
-                    ..Inputs::default()
-                })
-                .collect(),
-            steps: (size, 240),
-            ..Relay::draw(0)
-        };
+        let mut relay = Relay::of("knots", scene.clone(), (size, 240));
+        let driven = values.windows(2).flat_map(steps);
+        relay.knots = driven.map(|(value, slope)| accelerated(value, slope / size)).collect();
         let expected = relay.run(|scene| tighten(scene, PART, 0.0)).unwrap().0;
         let (course, failure) = relay.run(|_| {}).unwrap();
         assert!(failure.is_none());
@@ -292,26 +280,15 @@ fn a_touch_within_picoseconds_of_a_jump_is_not_missed() {
     }
 }
 
-/// Forces after each communication step, the greatest within it, and the instants of openings and closings; the fixed
-/// contact moves at `speed` (m/s).
-fn course(scene: &Scene, tolerance: f64, speed: f64, size: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let mut scene = scene.clone();
-    scene.solver.tolerance = tolerance;
-    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-    let (mut forces, mut greatest, mut instants) = (vec![], vec![], vec![]);
-    for k in 0..100 {
-        let time = f64::from(k) * size;
-        let inputs = Inputs {
-            support_displacement: speed * time,
-            support_displacement_rate: speed,
-            ..Inputs::default()
-        };
-        simulation.step(&inputs, time, size).unwrap();
-        forces.push(simulation.real(RealOutput::ContactForce));
-        greatest.push(simulation.real(RealOutput::StepMaximumForce));
-        instants.extend(simulation.events().0.map(|event| event.time));
-    }
-    (forces, greatest, instants)
+/// A hundred communication steps of `size` (s), the fixed contact moving at `speed` (m/s).
+fn course(scene: &Scene, tolerance: f64, speed: f64, size: f64) -> Course {
+    let mut relay = Relay::of("moved", scene.clone(), (size, 100));
+    relay.knots = (0..100)
+        .map(|k| supported(speed * f64::from(k) * size, speed))
+        .collect();
+    let (course, failure) = relay.run(|scene| scene.solver.tolerance = tolerance).unwrap();
+    assert!(failure.is_none());
+    course
 }
 
 /// Which tolerance for which question (`docs/accuracy.md`), at other damping of the first mode than the specimen's.
@@ -328,12 +305,9 @@ fn the_advice_on_the_tolerance_holds_for_light_damping() {
 
         let paper = damped(shaken(98.0, 1000.0));
         let preload = at_rest(&paper, RealOutput::PreloadForce);
-        let ((forces, ..), (expected, ..)) = (course(&paper, 1e-3, 0.0, 1e-4), course(&paper, tight, 0.0, 1e-4));
-        for (force, expected) in forces
-            .iter()
-            .zip(&expected)
-            .filter(|(_, force)| **force > 0.66 * preload)
-        {
+        let [found, expected] = [1e-3, tight].map(|tolerance| course(&paper, tolerance, 0.0, 1e-4).force);
+        let pairs = found.iter().zip(&expected);
+        for (force, expected) in pairs.filter(|(_, force)| **force > 0.66 * preload) {
             // Resistance varies as the force to the power -0.95.
             assert!(
                 0.95 * (force / expected - 1.0).abs() < 0.01,
@@ -342,8 +316,7 @@ fn the_advice_on_the_tolerance_holds_for_light_damping() {
         }
 
         let chatter = damped(shaken(800.0, 1000.0));
-        let ((_, _, instants), (_, _, expected)) =
-            (course(&chatter, 1e-2, 0.0, 5e-5), course(&chatter, tight, 0.0, 5e-5));
+        let [instants, expected] = [1e-2, tight].map(|tolerance| course(&chatter, tolerance, 0.0, 5e-5).events);
         assert!(!expected.is_empty());
         assert_eq!(instants.len(), expected.len(), "{ratio}");
         println!(
@@ -355,8 +328,7 @@ fn the_advice_on_the_tolerance_holds_for_light_damping() {
         let mut closing = damped(Scene::default());
         closing.contact.overtravel = -2e-5;
         closing.contact.damping = 1e-6;
-        let ((_, greatest, _), (_, expected, _)) =
-            (course(&closing, 1e-3, 0.06, 5e-5), course(&closing, tight, 0.06, 5e-5));
+        let [greatest, expected] = [1e-3, tight].map(|tolerance| course(&closing, tolerance, 0.06, 5e-5).greatest);
         let largest = expected.iter().fold(0.0_f64, |largest, force| largest.max(*force));
         println!(
             "{ratio}: peaks off by {:e} N of {largest} N, preload {preload} N",

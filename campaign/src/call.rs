@@ -10,7 +10,6 @@ pub const SLOTS: usize = 3;
 /// Faults in the pointers of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Nothing.
     None,
     /// The first array or pointer is null.
     FirstNull,
@@ -29,7 +28,6 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All faults.
     pub const ALL: [Self; 7] = [
         Self::FirstNull,
         Self::MiddleNull,
@@ -72,7 +70,6 @@ impl Point {
 /// Damage to the bytes of a saved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
-    /// Nothing.
     None,
     /// A flipped bit; its number is taken modulo the length.
     Flip(u32),
@@ -84,7 +81,6 @@ pub enum Damage {
 
 /// The functions `fmi2Get...Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum StatusFunction {
     Status,
     Real,
@@ -94,20 +90,15 @@ pub enum StatusFunction {
 }
 
 impl StatusFunction {
-    /// Every one.
     pub const ALL: [Self; 5] = [Self::Status, Self::Real, Self::Integer, Self::Boolean, Self::String];
 }
 
-/// A call.
+/// A call, named as the function of the standard, with its arguments.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // named after the functions of the standard, with their arguments
 pub enum Call {
     SetDebugLogging(bool, Vec<Option<String>>, Fault),
-    SetupExperiment {
-        tolerance: Option<f64>,
-        start: f64,
-        stop: Option<f64>,
-    },
+    /// Tolerance, start and stop.
+    SetupExperiment(Option<f64>, f64, Option<f64>),
     EnterInitializationMode,
     ExitInitializationMode,
     Terminate,
@@ -149,7 +140,7 @@ impl Call {
     pub fn function(&self) -> &'static str {
         match self {
             Self::SetDebugLogging(..) => "fmi2SetDebugLogging",
-            Self::SetupExperiment { .. } => "fmi2SetupExperiment",
+            Self::SetupExperiment(..) => "fmi2SetupExperiment",
             Self::EnterInitializationMode => "fmi2EnterInitializationMode",
             Self::ExitInitializationMode => "fmi2ExitInitializationMode",
             Self::Terminate => "fmi2Terminate",
@@ -209,12 +200,10 @@ impl Call {
         Self::Get(kind, references, Fault::None)
     }
 
-    /// Sets variables.
     pub fn set(kind: Kind, values: Vec<(u32, f64)>) -> Self {
         Self::Set(kind, values, Fault::None)
     }
 
-    /// Sets real variables.
     pub fn set_reals(values: Vec<(u32, f64)>) -> Self {
         Self::set(Kind::Real, values)
     }
@@ -229,17 +218,14 @@ impl Call {
         Self::Status(StatusFunction::Real, fmi2LastSuccessfulTime, Fault::None)
     }
 
-    /// Saves the state.
     pub fn save(slot: usize) -> Self {
         Self::GetState(slot, Fault::None)
     }
 
-    /// Restores a saved state.
     pub fn restore(slot: usize) -> Self {
         Self::SetState(slot, Fault::None)
     }
 
-    /// Serializes a saved state.
     pub fn serialize(slot: usize) -> Self {
         Self::Serialize(slot, Fault::None)
     }

@@ -114,21 +114,21 @@ fn setup(choices: &mut Choices) -> Call {
     let tolerance = choices.one(&[1e-6, 1e-6, 1e-4, 1e-9, 1e300, 0.0, -1.0, f64::NAN, f64::INFINITY]);
     let stop = start + choices.one(&[1e-2, 1.0, 1e-4, 0.0]);
     let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, start - 1.0];
-    Call::SetupExperiment {
-        tolerance: choices.percent(50).then_some(tolerance),
-        start: if choices.percent(3) {
+    Call::SetupExperiment(
+        choices.percent(50).then_some(tolerance),
+        if choices.percent(3) {
             choices.one(&strange[..3])
         } else {
             start
         },
-        stop: choices.percent(30).then(|| {
+        choices.percent(30).then(|| {
             if choices.percent(5) {
                 choices.one(&strange)
             } else {
                 stop
             }
         }),
-    }
+    )
 }
 
 /// A variable of the type if there is one; rarely of any type, or an unknown reference.

@@ -5,7 +5,7 @@ use std::ptr;
 
 use relay_contact::fmi2::*;
 use testing::instance::Arguments;
-use testing::log::{Log, Message, callbacks};
+use testing::log::{self, Log, Message, callbacks};
 
 use crate::api::Api;
 use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
@@ -32,7 +32,6 @@ type Function<Values> = unsafe extern "C" fn(fmi2Component, *const fmi2ValueRefe
 pub type Answer = (fmi2Status, Vec<f64>);
 
 impl<'a> Importer<'a> {
-    /// A new instance.
     pub fn new(api: &'a Api) -> Self {
         let log = Box::new(Log::default());
         let component = instantiate(api, &log);
@@ -53,13 +52,9 @@ impl<'a> Importer<'a> {
 
     /// The messages since the last call of this function.
     pub fn messages(&self) -> Vec<Message> {
-        self.log
-            .lock()
-            .map(|mut log| std::mem::take(&mut *log))
-            .unwrap_or_default()
+        log::taken(&self.log)
     }
 
-    /// The bytes of the slot.
     pub fn bytes(&mut self, slot: usize) -> &mut Vec<u8> {
         &mut self.bytes[slot]
     }
@@ -85,7 +80,7 @@ impl<'a> Importer<'a> {
                     let (_, pointer, count) = arguments(*fault, &pointers, &pointers);
                     (api.fmi2SetDebugLogging)(c, (*on).into(), count, pointer)
                 }
-                Call::SetupExperiment { tolerance, start, stop } => (api.fmi2SetupExperiment)(
+                Call::SetupExperiment(tolerance, start, stop) => (api.fmi2SetupExperiment)(
                     c,
                     tolerance.is_some().into(),
                     tolerance.unwrap_or(0.0),

@@ -14,20 +14,16 @@ use crate::states::{Phase, allowed};
 /// An instance under test.
 #[derive(Debug)]
 pub struct Judge<'a> {
-    /// The instance.
     pub importer: Importer<'a>,
     /// Its expected state.
     pub life: LifeCycle,
-    /// Calls made.
     pub calls: u64,
-    /// Communication steps made.
     pub steps: u64,
     /// Functions with the statuses they returned.
     pub met: BTreeSet<(&'static str, fmi2Status)>,
 }
 
 impl<'a> Judge<'a> {
-    /// A new instance.
     pub fn new(api: &'a Api) -> Self {
         Self {
             importer: Importer::new(api),
@@ -39,17 +35,10 @@ impl<'a> Judge<'a> {
     }
 
     /// Makes calls, up to the first wrong answer.
-    ///
-    /// # Errors
-    /// See [`Judge::call`].
     pub fn run<'c>(&mut self, calls: impl IntoIterator<Item = &'c Call>) -> Result<(), String> {
         calls.into_iter().try_for_each(|call| self.call(call))
     }
 
-    /// Makes a call.
-    ///
-    /// # Errors
-    /// A wrong result of the component.
     pub fn call(&mut self, call: &Call) -> Result<(), String> {
         if let Call::Replay {
             slot,

@@ -101,7 +101,7 @@ impl LifeCycle {
         }
         match call {
             Call::SetDebugLogging(_, categories, fault) => self::logging(categories, *fault),
-            Call::SetupExperiment { tolerance, start, stop } => {
+            Call::SetupExperiment(tolerance, start, stop) => {
                 if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop < *start) {
                     Fail
                 } else if tolerance.is_some_and(|tolerance| !(tolerance.is_finite() && tolerance > 0.0)) {
@@ -291,7 +291,7 @@ impl LifeCycle {
                     (false, _) => (self.errors && !errors, self.warnings && !warnings),
                 };
             }
-            Call::SetupExperiment { start, stop, .. } => {
+            Call::SetupExperiment(_, start, stop) => {
                 (now.time, now.stop) = (*start, stop.unwrap_or(f64::INFINITY));
             }
             Call::EnterInitializationMode => {

@@ -50,9 +50,7 @@ fn reference(relay: &Relay, part: f64, stronger: f64) -> Option<Course> {
 /// The reference of a relay beside itself in communication steps of a quarter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disagreement {
-    /// Number of the relay.
     pub number: u64,
-    /// Its kind.
     pub kind: &'static str,
     /// Largest difference of force and extremes, relative as the tolerance.
     pub difference: f64,
@@ -90,15 +88,11 @@ pub fn compare(number: u64, draw: fn(u64) -> Relay) -> Option<Disagreement> {
 /// A relay judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Judged {
-    /// Its number.
     pub number: u64,
-    /// Its kind.
     pub kind: &'static str,
     /// Damping of the first mode of the spring without contact, relative to critical.
     pub damping: f64,
-    /// Whether it opens.
     pub opens: bool,
-    /// Tolerance asked.
     pub tolerance: f64,
     /// Largest error of force and extremes, relative as the tolerance.
     pub error: f64,
@@ -106,15 +100,11 @@ pub struct Judged {
     pub instants: Option<f64>,
     /// `solver.forceError` at the end.
     pub estimate: f64,
-    /// The verdict.
     pub outcome: Outcome,
 }
 
 /// Judges the relay of a number, drawn by a function such as [`Relay::draw`], against itself at a `part` of its tolerance, or at the
 /// tightest if that is 0.
-///
-/// # Panics
-/// If it can be simulated as its reference, but not at its own tolerance.
 pub fn judge(number: u64, draw: fn(u64) -> Relay, part: f64) -> Judged {
     let relay = draw(number);
     let tolerance = relay.scene.solver.tolerance;

@@ -32,11 +32,7 @@ fn in_phase(phase: Phase) -> Judge<'static> {
 /// Every function with valid arguments, and with each fault.
 fn calls() -> Vec<Call> {
     let mut calls = vec![
-        Call::SetupExperiment {
-            tolerance: Some(1e-6),
-            start: 0.0,
-            stop: Some(1.0),
-        },
+        Call::SetupExperiment(Some(1e-6), 0.0, Some(1.0)),
         Call::EnterInitializationMode,
         Call::ExitInitializationMode,
         Call::Terminate,
@@ -163,16 +159,8 @@ fn wrong_numbers() -> Vec<Call> {
         calls.push(Call::DoStep(point, 1e-5));
     }
     for number in strange {
-        calls.push(Call::SetupExperiment {
-            tolerance: None,
-            start: number,
-            stop: None,
-        });
-        calls.push(Call::SetupExperiment {
-            tolerance: Some(number),
-            start: 0.0,
-            stop: Some(number),
-        });
+        calls.push(Call::SetupExperiment(None, number, None));
+        calls.push(Call::SetupExperiment(Some(number), 0.0, Some(number)));
     }
     calls
 }
@@ -242,11 +230,7 @@ fn what_is_no_instance_is_refused_by_every_function_and_left_alone() {
 
 #[test]
 fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_errors() {
-    let setup = Call::SetupExperiment {
-        tolerance: None,
-        start: 1.0,
-        stop: Some(1.0 + 2e-5),
-    };
+    let setup = Call::SetupExperiment(None, 1.0, Some(1.0 + 2e-5));
     let [enter, exit] = Call::INITIALISE;
     let start = [setup, enter, exit, Call::step(1e-5)];
     let cases: [&[Call]; 4] = [
