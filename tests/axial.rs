@@ -5,7 +5,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
-use testing::scenes::{at_rest, force_scale, forces, largest_difference};
+use testing::scenes::{accelerated, at_rest, force_scale, forces, largest_difference};
 
 /// A spring bent by half its length against a soft contact: the axial force is 0.4 of the buckling load and moves with
 /// the tip.
@@ -74,10 +74,7 @@ fn rest_is_found_and_kept() {
     // Under an acceleration that is put on and stays: the equilibrium of the axial force that belongs to it.
     for (overtravel, acceleration) in [(2e-3, 100.0), (8e-3, 100.0)] {
         scene.contact.overtravel = overtravel;
-        let inputs = Inputs {
-            base_acceleration: acceleration,
-            ..Inputs::default()
-        };
+        let inputs = accelerated(acceleration, 0.0);
         let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
         simulation.step(&inputs, 0.0, 10.0).unwrap();
         let force = simulation.real(RealOutput::ContactForce);

@@ -9,7 +9,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{IntegerOutput, RealOutput};
-use testing::scenes::{force_scale, shaken};
+use testing::scenes::{force_scale, shaken, supported};
 
 /// A scene and how it is driven.
 struct Case {
@@ -34,10 +34,7 @@ impl Case {
         scene.solver.tolerance = tolerance;
         scene.solver.modes = modes;
         scene.solver.maximum_step = maximum_step;
-        let mut inputs = Inputs {
-            support_displacement: (self.support)(0.0),
-            ..Inputs::default()
-        };
+        let mut inputs = supported((self.support)(0.0), 0.0);
         let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
         let mut forces = Vec::new();
         let mut time = 0.0;

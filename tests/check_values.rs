@@ -7,6 +7,7 @@ use relay_contact::reference::{self, Model, Section, Space};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
+use testing::near;
 use testing::scenes::at_rest;
 
 /// The specimen without axial force, at a tolerance of 1e-8.
@@ -19,10 +20,7 @@ fn specimen() -> Scene {
 
 /// All digits given, the last one rounded.
 fn digits(value: f64, published: f64, last_digit: f64) {
-    assert!(
-        (value - published).abs() <= 0.5001 * last_digit,
-        "{value} against {published}"
-    );
+    near("published", value, published, 0.5001 * last_digit);
 }
 
 #[test]

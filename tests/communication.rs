@@ -5,7 +5,8 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::{Event, Simulation};
 use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
-use testing::scenes::{self, at_rest, force_scale, largest_difference};
+use testing::near;
+use testing::scenes::{self, accelerated, at_rest, force_scale, largest_difference};
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {
     let mut scene = scenes::shaken(amplitude, 1000.0);
@@ -71,10 +72,7 @@ fn what_is_read_inside_the_integrators_steps_is_within_the_tolerance() {
 
 #[test]
 fn an_input_that_changes_counts_from_its_communication_point_on() {
-    let pulsed = |time: f64| Inputs {
-        base_acceleration: if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 },
-        ..Inputs::default()
-    };
+    let pulsed = |time: f64| accelerated(if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 }, 0.0);
     for size in [1, 2, 5, 10] {
         check(&shaken(98.0, 1e-6), size, pulsed);
     }
@@ -108,10 +106,7 @@ fn a_time_too_coarse_for_the_motion_is_refused() {
     let frequency = at_rest(&scene, RealOutput::PreloadFrequency);
     for start in [0.0, 1e9, 1e11, 1e15, 1e18] {
         let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
-        let inputs = Inputs {
-            base_acceleration: 98.0,
-            ..Inputs::default()
-        };
+        let inputs = accelerated(98.0, 0.0);
         let stepped = simulation.step(&inputs, start, 1e-3).map_err(|error| error.cause);
         let coarse = f64::EPSILON * (start + 1e-3);
         if coarse > 2e-3 / frequency {
@@ -157,10 +152,7 @@ fn a_simulation_may_start_before_one_second_before_zero() {
         let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
         let mut forces = Vec::new();
         for k in 0..64 {
-            let inputs = Inputs {
-                base_acceleration: if k % 16 < 8 { -600.0 } else { 200.0 },
-                ..Inputs::default()
-            };
+            let inputs = accelerated(if k % 16 < 8 { -600.0 } else { 200.0 }, 0.0);
             simulation.step(&inputs, start + f64::from(k) * size, size).unwrap();
             forces.push(simulation.real(RealOutput::ContactForce));
         }
@@ -220,10 +212,7 @@ fn a_contact_at_rest_is_not_integrated() {
         assert_eq!(simulation.real(RealOutput::ContactForce), force);
         assert_eq!(simulation.integer(IntegerOutput::SolverSteps), 0);
         // An input wakes it, and the motion after it comes to rest where the force is what statics say.
-        let pressed = Inputs {
-            base_acceleration: 10.0,
-            ..Inputs::default()
-        };
+        let pressed = accelerated(10.0, 0.0);
         simulation.step(&pressed, 3600.0, 1.0).unwrap();
         let steps = simulation.integer(IntegerOutput::SolverSteps);
         assert!(steps > 5, "{steps}");
@@ -278,10 +267,7 @@ fn events(size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<Event> {
 #[test]
 fn every_event_is_reported_once() {
     // A push that comes and goes takes back what the integrator has done ahead.
-    let pulsed = |time: f64| Inputs {
-        base_acceleration: if (time / 5e-4 + 1e-6) % 2.0 < 1.0 { 1.0 } else { 0.0 },
-        ..Inputs::default()
-    };
+    let pulsed = |time: f64| accelerated(if (time / 5e-4 + 1e-6) % 2.0 < 1.0 { 1.0 } else { 0.0 }, 0.0);
     for pulse in [false, true] {
         let inputs = |time: f64| if pulse { pulsed(time) } else { Inputs::default() };
         let expected = events(2000, inputs);
@@ -301,10 +287,7 @@ fn every_event_is_reported_once() {
             for (found, expected) in found.iter().zip(&expected) {
                 assert_eq!(found.closes, expected.closes);
                 // A force wrong by the tolerance reaches zero at another time.
-                assert!(
-                    (found.time - expected.time).abs() < 1e-8,
-                    "{size}: {found:?} {expected:?}"
-                );
+                near(size, found.time, expected.time, 1e-8);
             }
         }
     }

@@ -6,21 +6,17 @@ use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, RealOutput};
+use relay_contact::variables::RealOutput;
 use roxmltree::Document;
-use testing::scenes::{NEAR, check_slope, force_scale, propped_mass, range, shaken, threes};
+use testing::near;
+use testing::scenes::{LAWS, NEAR, accelerated, check_slope, force_scale, propped_mass, range, shaken, threes};
 
 const FREQUENCY: f64 = 1000.0;
 
 /// However a ramp is cut into communication steps, it is the same ramp.
 #[test]
 fn a_ramp_does_not_depend_on_where_it_is_cut() {
-    for law in [
-        ContactLawKind::Hertz,
-        ContactLawKind::Rough,
-        ContactLawKind::Linearised,
-        ContactLawKind::Bonded,
-    ] {
+    for law in LAWS {
         for damping in [8.063e-5, 0.0] {
             let mut scene = Scene::default();
             scene.effects.contact_law = law;
@@ -28,11 +24,7 @@ fn a_ramp_does_not_depend_on_where_it_is_cut() {
             scene.contact.damping = damping;
             scene.solver.tolerance = 1e-8;
             let rate = 2e5;
-            let ramp = |time: f64| Inputs {
-                base_acceleration: rate * time,
-                base_acceleration_rate: rate,
-                ..Inputs::default()
-            };
+            let ramp = |time: f64| accelerated(rate * time, rate);
             let [whole, parts] = [1e-4_f64, 7e-6].map(|step| {
                 let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
                 let mut time = 0.0;
@@ -55,9 +47,11 @@ fn a_ramp_does_not_depend_on_where_it_is_cut() {
             let omega = TAU * whole.real(RealOutput::PreloadFrequency);
             let grown = whole.real(RealOutput::ContactForce) - whole.real(RealOutput::PreloadForce);
             let swing = mass * rate / omega;
-            assert!(
-                (grown - mass * rate * 1e-3).abs() < 2.0 * swing,
-                "{law:?} {damping}: {grown}"
+            near(
+                format_args!("{law:?} {damping}"),
+                grown,
+                mass * rate * 1e-3,
+                2.0 * swing,
             );
         }
     }
@@ -111,10 +105,7 @@ fn an_open_contact_has_the_voltage_of_the_source_at_most() {
         simulation.step(&inputs, 0.0, 1e-6).unwrap();
         let rate = simulation.rate(RealOutput::ContactVoltage).unwrap();
         let expected = if expected.abs() < limit { expected } else { 0.0 };
-        assert!(
-            (rate - expected).abs() <= 1e-15 * expected.abs(),
-            "{current} A: {rate} V/s"
-        );
+        near(format_args!("{current} A"), rate, expected, 1e-15 * expected.abs());
     }
 }
 
@@ -134,12 +125,7 @@ const CONTINUOUS: [RealOutput; 8] = [
 #[test]
 fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
     const TOLERANCE: f64 = 1e-9;
-    for law in [
-        ContactLawKind::Hertz,
-        ContactLawKind::Rough,
-        ContactLawKind::Linearised,
-        ContactLawKind::Bonded,
-    ] {
+    for law in LAWS {
         for (amplitude, size) in [(98.0, 1e-6), (98.0, 1e-5), (400.0, 1e-6), (400.0, 1e-5)] {
             let mut scene = shaken(amplitude, FREQUENCY);
             scene.effects.contact_law = law;

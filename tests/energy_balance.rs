@@ -11,7 +11,7 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
 use testing::rig::Rig;
-use testing::scenes::{self, undamped};
+use testing::scenes::{self, accelerated, supported, undamped};
 
 /// Inputs over the communication step from an instant (s) by a length (s).
 type Drive = fn(f64, f64) -> Inputs;
@@ -32,30 +32,19 @@ fn held(_: f64, _: f64) -> Inputs {
 
 /// 500 Hz, 150 m/s2, held.
 fn base_held(time: f64, _: f64) -> Inputs {
-    Inputs {
-        base_acceleration: 150.0 * (TAU * 500.0 * time).sin(),
-        ..Inputs::default()
-    }
+    accelerated(150.0 * (TAU * 500.0 * time).sin(), 0.0)
 }
 
 /// The same, linear between communication points.
 fn base_linear(time: f64, size: f64) -> Inputs {
     let at = |time: f64| 150.0 * (TAU * 500.0 * time).sin();
-    Inputs {
-        base_acceleration: at(time),
-        base_acceleration_rate: (at(time + size) - at(time)) / size,
-        ..Inputs::default()
-    }
+    accelerated(at(time), (at(time + size) - at(time)) / size)
 }
 
 /// The fixed contact goes back and forth by 40 nm, 800 times a second.
 fn support_moves(time: f64, size: f64) -> Inputs {
     let at = |time: f64| 4e-8 * (1.0 - (TAU * 800.0 * time).cos());
-    Inputs {
-        support_displacement: at(time),
-        support_displacement_rate: (at(time + size) - at(time)) / size,
-        ..Inputs::default()
-    }
+    supported(at(time), (at(time + size) - at(time)) / size)
 }
 
 fn shaken(amplitude: f64) -> Scene {
@@ -276,10 +265,7 @@ fn the_balance_belongs_to_the_communication_point() {
         assert_eq!(step(&mut simulation, k), entries[k as usize]);
     }
     // A drive that changes takes the motion back to the communication point: what was entered beyond it is forgotten.
-    let changed = Inputs {
-        base_acceleration: 1.0,
-        ..Inputs::default()
-    };
+    let changed = accelerated(1.0, 0.0);
     simulation.step(&changed, f64::from(end) * size, 1e-3).unwrap();
     let way = 1e-4; // m, far more than the tip moves
     assert!(simulation.real(RealOutput::EnergyBalance).abs() < 1e-6 * scenes::force_scale(&shaken(400.0)) * way);

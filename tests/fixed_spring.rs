@@ -6,22 +6,18 @@ use std::sync::Arc;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{Segments, Shape};
+use relay_contact::scene::spring::Shape;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::rig::Rig;
 use testing::scenes::{forces, largest_difference, shaken};
-use testing::springs::{segment, spring_file};
+use testing::springs::{of_segments, segment, spring_file};
 
 /// The scene with a uniform fixed spring of this width and thickness over those of the moving one.
 fn on_spring(mut scene: Scene, width: f64, thickness: f64) -> Scene {
     let beam = &scene.beam;
     let whole = segment(beam.length, [width * beam.width; 2], [thickness * beam.thickness; 2]);
-    let segments = Segments {
-        segments: vec![whole],
-        ..Segments::default()
-    };
-    scene.fixed_spring = spring_file("fixed.toml", Shape::Segments(segments));
+    scene.fixed_spring = spring_file("fixed.toml", of_segments([whole]));
     scene
 }
 

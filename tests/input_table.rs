@@ -79,52 +79,21 @@ fn a_value_set_by_name_holds_the_input() -> Result<(), Box<dyn Error>> {
 #[test]
 fn errors_in_a_table_are_reported_with_their_place() -> Result<(), Box<dyn Error>> {
     let folder = Folder::new()?;
-    for (table, expected) in [
-        (
-            "time,contact.curent\n0,1\n",
-            ":1: contact.curent: no such input; similar: contact.current,",
-        ),
-        (
-            "time,contact.force\n0,1\n",
-            ":1: contact.force: no such input; similar: contact.current,",
-        ),
-        (
-            "contact.current\n1\n",
-            ":1: time: missing; expected a column of times in s",
-        ),
-        (
-            "time,contact.current,contact.current\n0,1,1\n",
-            ":1: contact.current: given twice, allowed is one column",
-        ),
-        (
-            "time,contact.current\n0,1\n1,one\n",
-            ":3: contact.current = \"one\": wrong type, allowed is a number",
-        ),
-        (
-            "time,contact.current\n0,1\n\n1,\n",
-            ":4: contact.current = \"\": wrong type, allowed is a number",
-        ),
-        (
-            "time,support.displacement\n0,1\n",
-            ":2: support.displacement = 1 m: not allowed, allowed is -0.1 to 0.1",
-        ),
-        (
-            "time,contact.current\n0,nan\n",
-            ":2: contact.current = NaN A: not allowed, allowed is -1000000 to 1000000",
-        ),
-        (
-            "time,contact.current\n1,0\n1,1\n",
-            ":3: time = 1 s: not allowed, allowed is any finite number above that of the previous row, 1 s",
-        ),
-        (
-            "time,contact.current\n0,1,2\n",
-            ": not a table of inputs: CSV error: record 1 (line: 2, byte: 21): found record with 3 fields",
-        ),
-        (
-            "time,contact.current\n",
-            ": not a table of inputs: no row below the header",
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        ("time,contact.curent\n0,1\n", ":1: contact.curent: no such input; similar: contact.current,"),
+        ("time,contact.force\n0,1\n", ":1: contact.force: no such input; similar: contact.current,"),
+        ("contact.current\n1\n", ":1: time: missing; expected a column of times in s"),
+        ("time,contact.current,contact.current\n0,1,1\n", ":1: contact.current: given twice, allowed is one column"),
+        ("time,contact.current\n0,1\n1,one\n", ":3: contact.current = \"one\": wrong type, allowed is a number"),
+        ("time,contact.current\n0,1\n\n1,\n", ":4: contact.current = \"\": wrong type, allowed is a number"),
+        ("time,support.displacement\n0,1\n", ":2: support.displacement = 1 m: not allowed, allowed is -0.1 to 0.1"),
+        ("time,contact.current\n0,nan\n", ":2: contact.current = NaN A: not allowed, allowed is -1000000 to 1000000"),
+        ("time,contact.current\n1,0\n1,1\n", ":3: time = 1 s: not allowed, allowed is any finite number above that of the previous row, 1 s"),
+        ("time,contact.current\n0,1,2\n", ": not a table of inputs: CSV error: record 1 (line: 2, byte: 21): found record with 3 fields"),
+        ("time,contact.current\n", ": not a table of inputs: no row below the header"),
+    ];
+    for (table, expected) in cases {
         let message = folder.message(table, "");
         let expected = format!("scene.toml:5: table.csv{expected}");
         assert!(message.starts_with(&expected), "{message}\n{expected}");

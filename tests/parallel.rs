@@ -7,11 +7,12 @@ use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
+use relay_contact::scene::spring::{GivenMode, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use testing::near;
 use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
-use testing::springs::{mode, segment, spring_file};
+use testing::springs::{mode, of_modes, segment, spring_file};
 
 /// The scene with a parallel contact, equal to the first.
 fn pair(mut scene: Scene) -> Scene {
@@ -57,11 +58,7 @@ fn two_equal_contacts_are_one_of_twice_the_constant() {
         let allowed = 3.0 * tolerance * largest;
         for (n, ([sum], [first, other])) in expected.iter().zip(&found).enumerate() {
             assert!((first - other).abs() <= allowed, "{fork:?} {n}: {first} {other}");
-            assert!(
-                (first + other - sum).abs() <= allowed,
-                "{fork:?} {n}: {}",
-                first + other - sum
-            );
+            near(format_args!("{fork:?} {n}"), first + other, *sum, allowed);
         }
         assert!(one.real(RealOutput::ContactLastOpening) > 0.0);
         let frequencies = [&one, &both].map(|simulation| simulation.real(RealOutput::PreloadFrequency));
@@ -181,13 +178,9 @@ fn modes_of_a_forked_spring_are_that_spring() {
         parallel: Some(own.parallel),
         ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
     });
-    let shape = Shape::Modes(Modes {
-        // Of all modes: the same truncation on both sides.
-        compliance: own.map(|own| own.tip.powi(2) / own.omega_squared).sum(),
-        parallel_compliance: None,
-        modes: modes.collect(),
-    });
-    given.spring = spring_file("modes.toml", shape);
+    // Of all modes: the same truncation on both sides.
+    let compliance = own.map(|own| own.tip.powi(2) / own.omega_squared).sum();
+    given.spring = spring_file("modes.toml", of_modes(compliance, modes));
     let [expected, found] = [&scene, &given].map(|scene| course(scene, 1e-5, 300, BOTH).0.concat());
     // The segments' static compliance is that of all modes, here that of 24.
     let difference = largest_difference(&found, &expected);

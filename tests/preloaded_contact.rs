@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Generator, Mode, Preload};
 use testing::rig::{Rig, compose, power};
-use testing::scenes::shaken;
+use testing::scenes::{accelerated, shaken};
 
 /// Preload of the specimen (N), its stiffness there (N/m) and a mass of the order of its rivet (kg).
 const FORCE: f64 = 0.152;
@@ -242,10 +242,7 @@ fn noise(exponent: f64, levels: &[(f64, [f64; 3])]) {
             for _ in 0..STEPS {
                 let before = rig.state.contact().last_opening;
                 now += step * time;
-                let inputs = Inputs {
-                    base_acceleration: size * normal(),
-                    ..Inputs::default()
-                };
+                let inputs = accelerated(size * normal(), 0.0);
                 rig.run_to(&inputs, now).unwrap();
                 let force = rig.state.contact().force / FORCE;
                 mean += force;

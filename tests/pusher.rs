@@ -4,6 +4,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ContactLawKind, PusherKind, RealOutput};
+use testing::near;
 use testing::scenes::shaken;
 
 /// A contact open by 0.1 mm without a pusher, and the specimen without its rivet.
@@ -90,18 +91,12 @@ fn a_pusher_at_the_tip_is_a_second_contact() {
         touches += u32::from(before == 0.0 && force > 0.0);
         before = force;
         let scale = greatest.max(a.model().force_scale());
-        assert!(
-            (push - force).abs() <= 3.0 * tolerance * scale,
-            "{time}: {push} {force} {greatest}"
-        );
+        near(time, push, force, 3.0 * tolerance * scale);
         let (least, other) = (
             a.real(RealOutput::StepMinimumPusherForce),
             b.real(RealOutput::SecondMinimumForce),
         );
-        assert!(
-            (least - other).abs() <= 3.0 * tolerance * scale,
-            "{time}: {least} {other}"
-        );
+        near(time, least, other, 3.0 * tolerance * scale);
     }
     assert!(touches >= 4 && greatest > 0.1, "{touches} {greatest}");
 }

@@ -3,12 +3,12 @@
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
+use relay_contact::scene::spring::GivenMode;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, PusherKind, ResistanceKind,
 };
-use testing::springs::{mode, segment, spring_file};
+use testing::springs::{mode, of_modes, of_segments, segment, spring_file};
 
 /// Changes of a scene, and parts of what is said of it; nothing is said where it can be simulated.
 type Case = (fn(&mut Scene, &mut Inputs), &'static [&'static str]);
@@ -50,16 +50,12 @@ fn gripping(scene: &mut Scene, coefficient: f64, initial: f64) {
 
 /// A spring given by a mode.
 fn with_mode(scene: &mut Scene, rotation: Option<f64>) {
-    let modes = Modes {
-        compliance: 1e-3,
-        parallel_compliance: None,
-        modes: vec![GivenMode {
-            rotation,
-            ..mode(1000.0, 150.0, 0.005)
-        }],
+    let given = GivenMode {
+        rotation,
+        ..mode(1000.0, 150.0, 0.005)
     };
     scene.effects.axial_force = AxialForceKind::None;
-    scene.spring = spring_file("own.toml", Shape::Modes(modes));
+    scene.spring = spring_file("own.toml", of_modes(1e-3, [given]));
 }
 
 #[rustfmt::skip]
@@ -160,11 +156,7 @@ fn what_does_not_go_together_is_refused_with_names_and_values() {
     check(|scene| scene.effects.pusher = PusherKind::Prescribed, PUSHER);
     check(|scene| scene.effects.pusher = PusherKind::Armature, ARMATURE);
     let on_spring = |scene: &mut Scene| {
-        let segments = Segments {
-            segments: vec![segment(0.015, [4e-3; 2], [2e-4; 2])],
-            ..Segments::default()
-        };
-        scene.fixed_spring = spring_file("fixed.toml", Shape::Segments(segments));
+        scene.fixed_spring = spring_file("fixed.toml", of_segments([segment(0.015, [4e-3; 2], [2e-4; 2])]));
     };
     check(on_spring, FIXED_SPRING);
     check(

@@ -3,6 +3,7 @@
 use relay_contact::reference::{ElectricalContact, Law, Power, reduced_modulus};
 use relay_contact::scene::Scene;
 use relay_contact::variables::{ContactLawKind, ResistanceKind};
+use testing::close;
 
 fn scene(kind: ResistanceKind) -> Scene {
     let mut scene = Scene::default();
@@ -68,10 +69,7 @@ fn the_force_at_a_threshold_is_where_the_resistance_passes_it() {
             for threshold in [1.0, 60.0, 1e6, 9e8] {
                 let force = electrical.force_at(threshold);
                 let found = 1.0 / electrical.conductance(force);
-                assert!(
-                    (found / threshold - 1.0).abs() < 1e-9,
-                    "{kind:?} {film} {threshold}: {found}"
-                );
+                close(format_args!("{kind:?} {film} {threshold}"), found, threshold, 1e-9);
             }
             assert_eq!(electrical.force_at(1e9), 0.0);
             assert_eq!(electrical.force_at(2e9), 0.0);

@@ -90,32 +90,16 @@ fn an_unknown_name_is_reported_with_its_line_and_the_nearest_names() {
 
 #[test]
 fn a_value_out_of_range_is_reported_with_its_unit_and_the_range() {
-    for (rest, expected) in [
-        (
-            "beam.length = -0.0155",
-            "line 5: beam.length = -0.0155 m: not allowed, allowed is 0.001 to 0.2",
-        ),
-        (
-            "contact.fixed.poissonRatio = 0.6",
-            "line 5: contact.fixed.poissonRatio = 0.6: not allowed, allowed is more than -1 and less than 0.5",
-        ),
-        (
-            "resistance.open = 0",
-            "line 5: resistance.open = 0 Ohm: not allowed, allowed is 1 to 1000000000000000",
-        ),
-        (
-            "beam.length = nan",
-            "line 5: beam.length = NaN m: not allowed, allowed is 0.001 to 0.2",
-        ),
-        (
-            "solver.modes = 129",
-            "line 5: solver.modes = 129: not allowed, allowed is 0 to 128",
-        ),
-        (
-            "effects.excitation = \"Sinus\"",
-            "line 5: effects.excitation = Sinus: no such choice, allowed are None, Sine, LogSweep, HalfSine, Random",
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        ("beam.length = -0.0155", "line 5: beam.length = -0.0155 m: not allowed, allowed is 0.001 to 0.2"),
+        ("contact.fixed.poissonRatio = 0.6", "line 5: contact.fixed.poissonRatio = 0.6: not allowed, allowed is more than -1 and less than 0.5"),
+        ("resistance.open = 0", "line 5: resistance.open = 0 Ohm: not allowed, allowed is 1 to 1000000000000000"),
+        ("beam.length = nan", "line 5: beam.length = NaN m: not allowed, allowed is 0.001 to 0.2"),
+        ("solver.modes = 129", "line 5: solver.modes = 129: not allowed, allowed is 0 to 128"),
+        ("effects.excitation = \"Sinus\"", "line 5: effects.excitation = Sinus: no such choice, allowed are None, Sine, LogSweep, HalfSine, Random"),
+    ];
+    for (rest, expected) in cases {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
     }
     assert_eq!(
@@ -126,36 +110,17 @@ fn a_value_out_of_range_is_reported_with_its_unit_and_the_range() {
 
 #[test]
 fn a_value_of_the_wrong_type_is_reported_with_the_type_expected() {
-    for (rest, expected) in [
-        (
-            "beam.length = \"long\"",
-            "line 5: beam.length = \"long\": wrong type, allowed is a number",
-        ),
-        (
-            "solver.modes = 3.5",
-            "line 5: solver.modes = 3.5: wrong type, allowed is a whole number",
-        ),
-        (
-            "effects.excitation = 2",
-            "line 5: effects.excitation = 2: wrong type, allowed is the name of a choice, as a string",
-        ),
-        (
-            "effects.chatter = 1",
-            "line 5: effects.chatter = 1: wrong type, allowed is true or false",
-        ),
-        (
-            "effects.chatter = \"false\"",
-            "line 5: effects.chatter = \"false\": wrong type, allowed is true or false",
-        ),
-        (
-            "beam.length = true",
-            "line 5: beam.length = true: wrong type, allowed is a number",
-        ),
-        (
-            "effects.excitation = false",
-            "line 5: effects.excitation = false: wrong type, allowed is the name of a choice, as a string",
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        ("beam.length = \"long\"", "line 5: beam.length = \"long\": wrong type, allowed is a number"),
+        ("solver.modes = 3.5", "line 5: solver.modes = 3.5: wrong type, allowed is a whole number"),
+        ("effects.excitation = 2", "line 5: effects.excitation = 2: wrong type, allowed is the name of a choice, as a string"),
+        ("effects.chatter = 1", "line 5: effects.chatter = 1: wrong type, allowed is true or false"),
+        ("effects.chatter = \"false\"", "line 5: effects.chatter = \"false\": wrong type, allowed is true or false"),
+        ("beam.length = true", "line 5: beam.length = true: wrong type, allowed is a number"),
+        ("effects.excitation = false", "line 5: effects.excitation = false: wrong type, allowed is the name of a choice, as a string"),
+    ];
+    for (rest, expected) in cases {
         assert_eq!(message(&format!("[parameters]\n{rest}\n")), expected);
     }
     for (rest, line, expected) in [

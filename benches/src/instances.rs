@@ -45,9 +45,6 @@ fn in_use() -> Option<f64> {
 
 /// Start (s, the least) of an instance alone and beside another one of the same scene, its end, and its memory (kB) after the start
 /// and after the run, as CSV. To be called first: what was freed before would be used again.
-///
-/// # Errors
-/// If a scene cannot be read or run.
 pub fn costs(quick: bool) -> Result<String> {
     let (mut memory, mut held) = (Vec::new(), Vec::new());
     for (name, tolerance) in SCENES {
@@ -96,9 +93,6 @@ pub fn costs(quick: bool) -> Result<String> {
 
 /// Runs a second of many scenes that differ in their frequency, by one worker and by one for each core, the best of some rounds,
 /// as CSV.
-///
-/// # Errors
-/// If a scene cannot be read or run.
 pub fn rates(quick: bool) -> Result<String> {
     let (scene, count) = (read("chatter-41g", "1e-2")?, if quick { 20 } else { 1000 });
     let mut scenes = Vec::new();

@@ -45,8 +45,5 @@ pub trait Integrator {
     fn name(&self) -> &'static str;
 
     /// Runs the problem with a tolerance of the force, relative to the force scale.
-    ///
-    /// # Errors
-    /// A [`Failure`].
     fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure>;
 }

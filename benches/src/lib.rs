@@ -10,6 +10,7 @@
 //! instances   start, end and memory of an instance; many of them
 //! machine     processor and versions
 //! ```
+#![allow(clippy::missing_errors_doc, clippy::missing_panics_doc)] // used only by its programs
 
 pub mod component;
 pub mod cvode;

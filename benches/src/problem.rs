@@ -35,9 +35,6 @@ pub struct Problem {
 
 impl Problem {
     /// The problem of a scene.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(name: &'static str, scene: &Scene, support_rate: f64, end: f64, cells: u32) -> Result<Self, SceneError> {
         Ok(Self {
             name,
@@ -50,9 +47,6 @@ impl Problem {
     }
 
     /// The same with a change of the scene.
-    ///
-    /// # Errors
-    /// A [`SceneError`] if the scene cannot be simulated.
     pub fn with(&self, change: impl FnOnce(&mut Scene)) -> Result<Self, SceneError> {
         let mut scene = self.model.scene().clone();
         change(&mut scene);
@@ -61,9 +55,6 @@ impl Problem {
     }
 
     /// The same with another number of modes than the component chooses.
-    ///
-    /// # Errors
-    /// As [`Problem::with`].
     pub fn with_modes(&self, modes: i32) -> Result<Self, SceneError> {
         self.with(|scene| scene.solver.modes = modes)
     }
@@ -90,9 +81,7 @@ impl Problem {
     }
 
     /// Amplitude (m/s2), angular frequency (rad/s) and phase of the base acceleration; the scenes here start it at 0.
-    ///
-    /// # Panics
-    /// For other waveforms, which the scenes here do not use.
+    /// Other waveforms panic.
     pub fn sine(&self) -> (f64, f64, f64) {
         let Scene {
             effects, excitation, ..

@@ -33,9 +33,7 @@ pub struct Reference {
 
 impl Reference {
     /// The reference of a problem, with steps of at most `step` seconds and of half of that.
-    ///
-    /// # Errors
-    /// A [`Failure`] where Newton's method fails at any step length, or the two runs do not open equally often.
+    /// It fails where Newton's method does at any step length, or the two runs do not open equally often.
     pub fn new(problem: &Problem, step: f64) -> Result<Self, Failure> {
         let (coarse_forces, coarse_events) = Motion::new(problem, step, GROWTH).run()?;
         let (forces, events) = Motion::new(problem, 0.5 * step, GROWTH.sqrt()).run()?;

@@ -14,18 +14,12 @@ pub const MANY_MODES: i32 = 64;
 pub const COMPARED: [&str; 4] = ["paper", "chatter", "chatter 3 %", "closing bounce"];
 
 /// The published case: 98 m/s2 at 1000 Hz, 50 ms; the contact stays closed.
-///
-/// # Errors
-/// A [`SceneError`] if the scene cannot be simulated; the same for all functions here.
 pub fn paper() -> Result<Problem, SceneError> {
     Problem::new("paper", &shaken(98.0, 1000.0), 0.0, 0.05, 500)
 }
 
 /// 400 m/s2: the contact opens in every period; first 5 ms. The first mode of the spring has this share of critical damping;
 /// the specimen has 34 %.
-///
-/// # Errors
-/// See [`paper`].
 pub fn chatter(name: &'static str, damping: f64) -> Result<Problem, SceneError> {
     let mut scene = shaken(400.0, 1000.0);
     scene.beam.stiffness_damping *= damping / 0.34;
@@ -34,9 +28,6 @@ pub fn chatter(name: &'static str, damping: f64) -> Result<Problem, SceneError> 
 
 /// The contact is open by 20 um at the start, and the fixed contact approaches at 60 mm/s: it closes and bounces.
 /// Contact damping is 1 us; with that of the specimen it would not bounce. 5 ms.
-///
-/// # Errors
-/// See [`paper`].
 pub fn closing_bounce() -> Result<Problem, SceneError> {
     let mut scene = Scene::default();
     scene.contact.overtravel = -20e-6;
@@ -45,9 +36,6 @@ pub fn closing_bounce() -> Result<Problem, SceneError> {
 }
 
 /// The published case with the contact linearised and bonded, so that everything is linear.
-///
-/// # Errors
-/// See [`paper`].
 pub fn linear() -> Result<Problem, SceneError> {
     let mut scene = shaken(98.0, 1000.0);
     scene.effects.contact_law = ContactLawKind::Bonded;
@@ -55,9 +43,6 @@ pub fn linear() -> Result<Problem, SceneError> {
 }
 
 /// All of them.
-///
-/// # Errors
-/// See [`paper`].
 pub fn all() -> Result<Vec<Problem>, SceneError> {
     Ok(vec![
         paper()?,

@@ -70,9 +70,6 @@ impl Measured {
 }
 
 /// Measures everything, each run in `turns` rounds; gives it as CSV.
-///
-/// # Errors
-/// If a scene cannot be simulated or its reference fails.
 pub fn measure(quick: bool, turns: usize) -> Result<String> {
     let cases = all(quick)?;
     let rows = rounds(&cases, turns);

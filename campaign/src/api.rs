@@ -41,9 +41,6 @@ macro_rules! functions {
             }
 
             /// The functions of a library file.
-            ///
-            /// # Errors
-            /// If there is no library or a function is missing.
             pub fn load(path: &Path) -> Result<Self, libloading::Error> {
                 // SAFETY: the component does nothing on loading; names and types are those of the standard.
                 unsafe {

@@ -10,7 +10,6 @@ pub const SLOTS: usize = 3;
 /// Faults in the pointers of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Nothing.
     None,
     /// The first array or pointer is null.
     FirstNull,
@@ -29,7 +28,6 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All faults.
     pub const ALL: [Self; 7] = [
         Self::FirstNull,
         Self::MiddleNull,
@@ -72,7 +70,6 @@ impl Point {
 /// Damage to the bytes of a saved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damage {
-    /// Nothing.
     None,
     /// A flipped bit; its number is taken modulo the length.
     Flip(u32),
@@ -84,7 +81,6 @@ pub enum Damage {
 
 /// The functions `fmi2Get...Status`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
 pub enum StatusFunction {
     Status,
     Real,
@@ -94,88 +90,42 @@ pub enum StatusFunction {
 }
 
 impl StatusFunction {
-    /// Every one.
     pub const ALL: [Self; 5] = [Self::Status, Self::Real, Self::Integer, Self::Boolean, Self::String];
 }
 
-/// A call.
+/// A call, named as the function of the standard, with its arguments.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)] // named after the functions and arguments of the standard
 pub enum Call {
-    SetDebugLogging {
-        on: bool,
-        categories: Vec<Option<String>>,
-        fault: Fault,
-    },
-    SetupExperiment {
-        tolerance: Option<f64>,
-        start: f64,
-        stop: Option<f64>,
-    },
+    SetDebugLogging(bool, Vec<Option<String>>, Fault),
+    /// Tolerance, start and stop.
+    SetupExperiment(Option<f64>, f64, Option<f64>),
     EnterInitializationMode,
     ExitInitializationMode,
     Terminate,
     Reset,
     /// `fmi2FreeInstance`, which frees the saved states too, and `fmi2Instantiate`; the bytes stay.
     Renew,
-    Get {
-        kind: Kind,
-        references: Vec<u32>,
-        fault: Fault,
-    },
-    Set {
-        kind: Kind,
-        values: Vec<(u32, f64)>,
-        fault: Fault,
-    },
-    GetState {
-        slot: usize,
-        fault: Fault,
-    },
-    SetState {
-        slot: usize,
-        fault: Fault,
-    },
-    FreeState {
-        slot: usize,
-        fault: Fault,
-    },
-    StateSize {
-        slot: usize,
-        fault: Fault,
-    },
+    Get(Kind, Vec<u32>, Fault),
+    Set(Kind, Vec<(u32, f64)>, Fault),
+    /// Of a slot, as in the following.
+    GetState(usize, Fault),
+    SetState(usize, Fault),
+    FreeState(usize, Fault),
+    StateSize(usize, Fault),
     /// The bytes are stored in the slot.
-    Serialize {
-        slot: usize,
-        fault: Fault,
-    },
+    Serialize(usize, Fault),
     /// From the bytes of the slot.
-    Deserialize {
-        slot: usize,
-        damage: Damage,
-        fault: Fault,
-    },
+    Deserialize(usize, Damage, Fault),
     DirectionalDerivative,
     /// Reference, order, value.
-    SetInputDerivatives {
-        values: Vec<(u32, i32, f64)>,
-        fault: Fault,
-    },
+    SetInputDerivatives(Vec<(u32, i32, f64)>, Fault),
     /// Reference, order.
-    GetOutputDerivatives {
-        values: Vec<(u32, i32)>,
-        fault: Fault,
-    },
-    DoStep {
-        point: Point,
-        size: f64,
-    },
+    GetOutputDerivatives(Vec<(u32, i32)>, Fault),
+    /// Communication point and length of the step, s.
+    DoStep(Point, f64),
     CancelStep,
-    Status {
-        function: StatusFunction,
-        kind: u32,
-        fault: Fault,
-    },
+    /// The function, and the kind of status it is asked for.
+    Status(StatusFunction, u32, Fault),
     /// Performed twice: set the state of the slot, set the inputs, make steps. Both must give the same bits.
     Replay {
         slot: usize,
@@ -189,37 +139,37 @@ impl Call {
     /// Name of the C function.
     pub fn function(&self) -> &'static str {
         match self {
-            Self::SetDebugLogging { .. } => "fmi2SetDebugLogging",
-            Self::SetupExperiment { .. } => "fmi2SetupExperiment",
+            Self::SetDebugLogging(..) => "fmi2SetDebugLogging",
+            Self::SetupExperiment(..) => "fmi2SetupExperiment",
             Self::EnterInitializationMode => "fmi2EnterInitializationMode",
             Self::ExitInitializationMode => "fmi2ExitInitializationMode",
             Self::Terminate => "fmi2Terminate",
             Self::Reset => "fmi2Reset",
             Self::Renew => "fmi2FreeInstance",
-            Self::Get { kind, .. } => match kind {
+            Self::Get(kind, ..) => match kind {
                 Kind::Real => "fmi2GetReal",
                 Kind::Integer => "fmi2GetInteger",
                 Kind::Boolean => "fmi2GetBoolean",
                 Kind::String => "fmi2GetString",
             },
-            Self::Set { kind, .. } => match kind {
+            Self::Set(kind, ..) => match kind {
                 Kind::Real => "fmi2SetReal",
                 Kind::Integer => "fmi2SetInteger",
                 Kind::Boolean => "fmi2SetBoolean",
                 Kind::String => "fmi2SetString",
             },
-            Self::GetState { .. } => "fmi2GetFMUstate",
-            Self::SetState { .. } | Self::Replay { .. } => "fmi2SetFMUstate",
-            Self::FreeState { .. } => "fmi2FreeFMUstate",
-            Self::StateSize { .. } => "fmi2SerializedFMUstateSize",
-            Self::Serialize { .. } => "fmi2SerializeFMUstate",
-            Self::Deserialize { .. } => "fmi2DeSerializeFMUstate",
+            Self::GetState(..) => "fmi2GetFMUstate",
+            Self::SetState(..) | Self::Replay { .. } => "fmi2SetFMUstate",
+            Self::FreeState(..) => "fmi2FreeFMUstate",
+            Self::StateSize(..) => "fmi2SerializedFMUstateSize",
+            Self::Serialize(..) => "fmi2SerializeFMUstate",
+            Self::Deserialize(..) => "fmi2DeSerializeFMUstate",
             Self::DirectionalDerivative => "fmi2GetDirectionalDerivative",
-            Self::SetInputDerivatives { .. } => "fmi2SetRealInputDerivatives",
-            Self::GetOutputDerivatives { .. } => "fmi2GetRealOutputDerivatives",
-            Self::DoStep { .. } => "fmi2DoStep",
+            Self::SetInputDerivatives(..) => "fmi2SetRealInputDerivatives",
+            Self::GetOutputDerivatives(..) => "fmi2GetRealOutputDerivatives",
+            Self::DoStep(..) => "fmi2DoStep",
             Self::CancelStep => "fmi2CancelStep",
-            Self::Status { function, .. } => match function {
+            Self::Status(function, ..) => match function {
                 StatusFunction::Status => "fmi2GetStatus",
                 StatusFunction::Real => "fmi2GetRealStatus",
                 StatusFunction::Integer => "fmi2GetIntegerStatus",
@@ -247,61 +197,41 @@ impl Call {
 
     /// Reads variables; pointers are valid, as in all functions below.
     pub fn get(kind: Kind, references: Vec<u32>) -> Self {
-        let fault = Fault::None;
-        Self::Get {
-            kind,
-            references,
-            fault,
-        }
+        Self::Get(kind, references, Fault::None)
     }
 
-    /// Sets variables.
     pub fn set(kind: Kind, values: Vec<(u32, f64)>) -> Self {
-        let fault = Fault::None;
-        Self::Set { kind, values, fault }
+        Self::Set(kind, values, Fault::None)
     }
 
-    /// Sets real variables.
     pub fn set_reals(values: Vec<(u32, f64)>) -> Self {
         Self::set(Kind::Real, values)
     }
 
     /// A step from the time of the instance.
     pub fn step(size: f64) -> Self {
-        let point = Point::Here;
-        Self::DoStep { point, size }
+        Self::DoStep(Point::Here, size)
     }
 
     /// The last successful time.
     pub fn time() -> Self {
-        Self::Status {
-            function: StatusFunction::Real,
-            kind: fmi2LastSuccessfulTime,
-            fault: Fault::None,
-        }
+        Self::Status(StatusFunction::Real, fmi2LastSuccessfulTime, Fault::None)
     }
 
-    /// Saves the state.
     pub fn save(slot: usize) -> Self {
-        let fault = Fault::None;
-        Self::GetState { slot, fault }
+        Self::GetState(slot, Fault::None)
     }
 
-    /// Restores a saved state.
     pub fn restore(slot: usize) -> Self {
-        let fault = Fault::None;
-        Self::SetState { slot, fault }
+        Self::SetState(slot, Fault::None)
     }
 
-    /// Serializes a saved state.
     pub fn serialize(slot: usize) -> Self {
-        let fault = Fault::None;
-        Self::Serialize { slot, fault }
+        Self::Serialize(slot, Fault::None)
     }
 
     /// Restores a saved state from undamaged bytes.
     pub fn deserialize(slot: usize) -> Self {
-        let (damage, fault) = (Damage::None, Fault::None);
-        Self::Deserialize { slot, damage, fault }
+        Self::Deserialize(slot, Damage::None, Fault::None)
     }
 }

@@ -10,18 +10,13 @@ use crate::texts;
 /// The type of a variable by the function that reads it: enumerations are integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// `fmi2GetReal`.
     Real,
-    /// `fmi2GetInteger`.
     Integer,
-    /// `fmi2GetBoolean`.
     Boolean,
-    /// `fmi2GetString`.
     String,
 }
 
 impl Kind {
-    /// Every one.
     pub const ALL: [Self; 4] = [Self::Real, Self::Integer, Self::Boolean, Self::String];
 }
 
@@ -36,24 +31,16 @@ pub enum Role {
     Output,
 }
 
-/// A variable.
 #[derive(Clone, Debug)]
 pub struct Variable {
-    /// Name in the description.
     pub name: String,
-    /// Value reference.
     pub reference: u32,
-    /// Type.
     pub kind: Kind,
-    /// Who sets its value.
     pub role: Role,
-    /// Whether it is continuous.
     pub continuous: bool,
     /// Start value; 0 for outputs and the empty text.
     pub start: f64,
-    /// Smallest value allowed.
     pub min: f64,
-    /// Largest value allowed.
     pub max: f64,
     /// Values of an enumeration, numbers of texts.
     pub choices: Vec<f64>,
@@ -74,11 +61,9 @@ impl Variable {
 /// The description.
 #[derive(Clone, Debug)]
 pub struct Description {
-    /// The GUID.
     pub guid: String,
     /// In the order of the file.
     pub variables: Vec<Variable>,
-    /// Log categories.
     pub categories: Vec<String>,
 }
 
@@ -86,7 +71,6 @@ pub struct Description {
 pub static DESCRIPTION: LazyLock<Description> = LazyLock::new(|| Description::parse(MODEL_DESCRIPTION));
 
 impl Description {
-    /// Reads a description.
     pub fn parse(xml: &str) -> Self {
         let document = Document::parse(xml).expect("modelDescription.xml is XML");
         let element = |name| document.descendants().find(|node| node.has_tag_name(name));

@@ -102,11 +102,11 @@ fn logging(choices: &mut Choices) -> Call {
         1 => Some("log%sAll".to_owned()),
         _ => Some(known[choices.below(known.len())].clone()),
     };
-    Call::SetDebugLogging {
-        on: choices.percent(50),
-        categories: (0..count).map(|_| category(choices)).collect(),
-        fault: fault(choices),
-    }
+    Call::SetDebugLogging(
+        choices.percent(50),
+        (0..count).map(|_| category(choices)).collect(),
+        fault(choices),
+    )
 }
 
 fn setup(choices: &mut Choices) -> Call {
@@ -114,21 +114,21 @@ fn setup(choices: &mut Choices) -> Call {
     let tolerance = choices.one(&[1e-6, 1e-6, 1e-4, 1e-9, 1e300, 0.0, -1.0, f64::NAN, f64::INFINITY]);
     let stop = start + choices.one(&[1e-2, 1.0, 1e-4, 0.0]);
     let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, start - 1.0];
-    Call::SetupExperiment {
-        tolerance: choices.percent(50).then_some(tolerance),
-        start: if choices.percent(3) {
+    Call::SetupExperiment(
+        choices.percent(50).then_some(tolerance),
+        if choices.percent(3) {
             choices.one(&strange[..3])
         } else {
             start
         },
-        stop: choices.percent(30).then(|| {
+        choices.percent(30).then(|| {
             if choices.percent(5) {
                 choices.one(&strange)
             } else {
                 stop
             }
         }),
-    }
+    )
 }
 
 /// A variable of the type if there is one; rarely of any type, or an unknown reference.
@@ -157,11 +157,11 @@ fn get(choices: &mut Choices, now: &Moment) -> Call {
     let wanted = |variable: &Variable| variable.kind == kind && !(before && variable.role == Role::Output);
     let count = choices.below(4);
     let count = if before && kind == Kind::Boolean { 0 } else { count };
-    Call::Get {
+    Call::Get(
         kind,
-        references: (0..count).map(|_| reference(choices, wanted)).collect(),
-        fault: fault(choices),
-    }
+        (0..count).map(|_| reference(choices, wanted)).collect(),
+        fault(choices),
+    )
 }
 
 fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
@@ -174,11 +174,7 @@ fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
         let reference = reference(choices, wanted);
         (reference, value(choices, reference))
     });
-    Call::Set {
-        kind,
-        values: values.collect(),
-        fault: fault(choices),
-    }
+    Call::Set(kind, values.collect(), fault(choices))
 }
 
 /// Mostly near the start value, sometimes a bound, rarely out of range.
@@ -244,7 +240,7 @@ fn step(choices: &mut Choices) -> Call {
         2..8 => Point::Rounded(choices.one(&[-2, -1, 1, 2])),
         _ => Point::Here,
     };
-    Call::DoStep { point, size }
+    Call::DoStep(point, size)
 }
 
 /// A step size within four decades, often the previous one.
@@ -260,31 +256,31 @@ fn state(choices: &mut Choices) -> Call {
     let slot = choices.below(SLOTS);
     let fault = fault(choices);
     match choices.below(20) {
-        0..6 => Call::GetState { slot, fault },
-        6..11 => Call::SetState { slot, fault },
-        11 | 12 => Call::FreeState { slot, fault },
-        13 => Call::StateSize { slot, fault },
-        14..17 => Call::Serialize { slot, fault },
-        _ => Call::Deserialize {
+        0..6 => Call::GetState(slot, fault),
+        6..11 => Call::SetState(slot, fault),
+        11 | 12 => Call::FreeState(slot, fault),
+        13 => Call::StateSize(slot, fault),
+        14..17 => Call::Serialize(slot, fault),
+        _ => Call::Deserialize(
             slot,
-            damage: match choices.below(8) {
+            match choices.below(8) {
                 0 => Damage::Flip(choices.bits()),
                 1 => Damage::Cut(choices.bits()),
                 2 => Damage::Longer(choices.one(&[0, 3, 255])),
                 _ => Damage::None,
             },
             fault,
-        },
+        ),
     }
 }
 
 fn status(choices: &mut Choices) -> Call {
     use StatusFunction::{Boolean, Integer, Real, Status, String};
-    Call::Status {
-        function: choices.one(&[Real, Real, Boolean, Status, Integer, String]),
-        kind: choices.one(&[2, 2, 3, 0, 1, 4, u32::MAX]),
-        fault: fault(choices),
-    }
+    Call::Status(
+        choices.one(&[Real, Real, Boolean, Status, Integer, String]),
+        choices.one(&[2, 2, 3, 0, 1, 4, u32::MAX]),
+        fault(choices),
+    )
 }
 
 fn input_derivatives(choices: &mut Choices) -> Call {
@@ -294,10 +290,7 @@ fn input_derivatives(choices: &mut Choices) -> Call {
         let rate = value(choices, reference) / LONGEST_STEP;
         (reference, if choices.percent(3) { 2 } else { 1 }, rate)
     });
-    Call::SetInputDerivatives {
-        values: values.collect(),
-        fault: fault(choices),
-    }
+    Call::SetInputDerivatives(values.collect(), fault(choices))
 }
 
 fn output_derivatives(choices: &mut Choices) -> Call {
@@ -308,14 +301,11 @@ fn output_derivatives(choices: &mut Choices) -> Call {
         });
         (reference, i32::from(!choices.percent(3)))
     });
-    Call::GetOutputDerivatives {
-        values: values.collect(),
-        fault: fault(choices),
-    }
+    Call::GetOutputDerivatives(values.collect(), fault(choices))
 }
 
 fn replay(choices: &mut Choices, now: &Moment) -> Call {
-    let Call::Set { values, .. } = set(choices, now, Kind::Real) else {
+    let Call::Set(_, values, _) = set(choices, now, Kind::Real) else {
         return Call::Reset;
     };
     Call::Replay {

@@ -125,9 +125,7 @@ pub enum Outcome {
 }
 
 /// Deserializes the bytes, restores the state, and makes `steps` communication steps.
-///
-/// # Errors
-/// A panic in the component, recognised by its message, or a status that FMI does not allow.
+/// An error is a panic in the component, recognised by its message, or a status that FMI does not allow.
 pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
     let mut importer = Importer::new(api);
     *importer.bytes(0) = bytes.to_vec();

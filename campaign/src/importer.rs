@@ -5,7 +5,7 @@ use std::ptr;
 
 use relay_contact::fmi2::*;
 use testing::instance::Arguments;
-use testing::log::{Log, Message, callbacks};
+use testing::log::{self, Log, Message, callbacks};
 
 use crate::api::Api;
 use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
@@ -32,7 +32,6 @@ type Function<Values> = unsafe extern "C" fn(fmi2Component, *const fmi2ValueRefe
 pub type Answer = (fmi2Status, Vec<f64>);
 
 impl<'a> Importer<'a> {
-    /// A new instance.
     pub fn new(api: &'a Api) -> Self {
         let log = Box::new(Log::default());
         let component = instantiate(api, &log);
@@ -53,13 +52,9 @@ impl<'a> Importer<'a> {
 
     /// The messages since the last call of this function.
     pub fn messages(&self) -> Vec<Message> {
-        self.log
-            .lock()
-            .map(|mut log| std::mem::take(&mut *log))
-            .unwrap_or_default()
+        log::taken(&self.log)
     }
 
-    /// The bytes of the slot.
     pub fn bytes(&mut self, slot: usize) -> &mut Vec<u8> {
         &mut self.bytes[slot]
     }
@@ -70,7 +65,7 @@ impl<'a> Importer<'a> {
         let (api, c) = (self.api, self.component);
         let status = unsafe {
             match call {
-                Call::SetDebugLogging { on, categories, fault } => {
+                Call::SetDebugLogging(on, categories, fault) => {
                     let texts: Vec<_> = categories
                         .iter()
                         .map(|text| {
@@ -85,7 +80,7 @@ impl<'a> Importer<'a> {
                     let (_, pointer, count) = arguments(*fault, &pointers, &pointers);
                     (api.fmi2SetDebugLogging)(c, (*on).into(), count, pointer)
                 }
-                Call::SetupExperiment { tolerance, start, stop } => (api.fmi2SetupExperiment)(
+                Call::SetupExperiment(tolerance, start, stop) => (api.fmi2SetupExperiment)(
                     c,
                     tolerance.is_some().into(),
                     tolerance.unwrap_or(0.0),
@@ -103,18 +98,14 @@ impl<'a> Importer<'a> {
                     self.component = instantiate(api, &self.log);
                     if self.component.is_null() { fmi2Error } else { fmi2OK }
                 }
-                Call::Get {
-                    kind,
-                    references,
-                    fault,
-                } => return self.get(*kind, references, *fault),
-                Call::Set { kind, values, fault } => self.set(*kind, values, *fault),
-                Call::GetState { .. }
-                | Call::SetState { .. }
-                | Call::FreeState { .. }
-                | Call::StateSize { .. }
-                | Call::Serialize { .. }
-                | Call::Deserialize { .. } => return self.state_call(call),
+                Call::Get(kind, references, fault) => return self.get(*kind, references, *fault),
+                Call::Set(kind, values, fault) => self.set(*kind, values, *fault),
+                Call::GetState(..)
+                | Call::SetState(..)
+                | Call::FreeState(..)
+                | Call::StateSize(..)
+                | Call::Serialize(..)
+                | Call::Deserialize(..) => return self.state_call(call),
                 Call::DirectionalDerivative => {
                     let (known, unknown) = (DESCRIPTION.variables[0].reference, DESCRIPTION.outputs(Kind::Real)[0]);
                     let (change, mut result) = (1.0, 0.0);
@@ -128,14 +119,14 @@ impl<'a> Importer<'a> {
                         &raw mut result,
                     )
                 }
-                Call::SetInputDerivatives { values, fault } => {
+                Call::SetInputDerivatives(values, fault) => {
                     let references: Vec<_> = values.iter().map(|value| value.0).collect();
                     let orders: Vec<_> = values.iter().map(|value| value.1).collect();
                     let numbers: Vec<_> = values.iter().map(|value| value.2).collect();
                     let (vr, value, count) = arguments(*fault, &references, &numbers);
                     (api.fmi2SetRealInputDerivatives)(c, vr, count, middle(*fault, &orders), value)
                 }
-                Call::GetOutputDerivatives { values, fault } => {
+                Call::GetOutputDerivatives(values, fault) => {
                     let references: Vec<_> = values.iter().map(|value| value.0).collect();
                     let orders: Vec<_> = values.iter().map(|value| value.1).collect();
                     let mut numbers = vec![f64::NAN; values.len()];
@@ -143,9 +134,9 @@ impl<'a> Importer<'a> {
                     let status = (api.fmi2GetRealOutputDerivatives)(c, vr, count, middle(*fault, &orders), value);
                     return (status, numbers);
                 }
-                Call::DoStep { point, size } => (api.fmi2DoStep)(c, point.instant(time, *size), *size, fmi2True),
+                Call::DoStep(point, size) => (api.fmi2DoStep)(c, point.instant(time, *size), *size, fmi2True),
                 Call::CancelStep => (api.fmi2CancelStep)(c),
-                Call::Status { function, kind, fault } => return self.status(*function, *kind, *fault),
+                Call::Status(function, kind, fault) => return self.status(*function, *kind, *fault),
                 Call::Replay { .. } => unreachable!("a replay consists of other calls"),
             }
         };
@@ -219,8 +210,8 @@ impl<'a> Importer<'a> {
         };
         let status = unsafe {
             match *call {
-                Call::SetState { slot, fault } => (api.fmi2SetFMUstate)(c, state(slot, fault)),
-                Call::StateSize { slot, fault } => {
+                Call::SetState(slot, fault) => (api.fmi2SetFMUstate)(c, state(slot, fault)),
+                Call::StateSize(slot, fault) => {
                     let mut size = 0;
                     let place = if fault == Fault::LastNull {
                         ptr::null_mut()
@@ -230,7 +221,7 @@ impl<'a> Importer<'a> {
                     let status = (api.fmi2SerializedFMUstateSize)(c, state(slot, fault), place);
                     return (status, vec![size as f64]);
                 }
-                Call::Serialize { slot, fault } => {
+                Call::Serialize(slot, fault) => {
                     let from = state(slot, fault);
                     let mut size = 0;
                     if !self.states[slot].is_null() {
@@ -249,17 +240,17 @@ impl<'a> Importer<'a> {
                     }
                     status
                 }
-                Call::GetState { slot, fault } => match fault {
+                Call::GetState(slot, fault) => match fault {
                     Fault::FirstNull => (api.fmi2GetFMUstate)(c, ptr::null_mut()),
                     Fault::Foreign => (api.fmi2GetFMUstate)(c, &raw mut foreign),
                     _ => (api.fmi2GetFMUstate)(c, &raw mut self.states[slot]),
                 },
-                Call::FreeState { slot, fault } => match fault {
+                Call::FreeState(slot, fault) => match fault {
                     Fault::FirstNull => (api.fmi2FreeFMUstate)(c, ptr::null_mut()),
                     Fault::Foreign => (api.fmi2FreeFMUstate)(c, &raw mut foreign),
                     _ => (api.fmi2FreeFMUstate)(c, &raw mut self.states[slot]),
                 },
-                Call::Deserialize { slot, damage, fault } => {
+                Call::Deserialize(slot, damage, fault) => {
                     let bytes = damaged(&self.bytes[slot], damage);
                     let (bytes, size) = match fault {
                         Fault::FirstNull => (ptr::null(), bytes.len()),

@@ -14,20 +14,16 @@ use crate::states::{Phase, allowed};
 /// An instance under test.
 #[derive(Debug)]
 pub struct Judge<'a> {
-    /// The instance.
     pub importer: Importer<'a>,
     /// Its expected state.
     pub life: LifeCycle,
-    /// Calls made.
     pub calls: u64,
-    /// Communication steps made.
     pub steps: u64,
     /// Functions with the statuses they returned.
     pub met: BTreeSet<(&'static str, fmi2Status)>,
 }
 
 impl<'a> Judge<'a> {
-    /// A new instance.
     pub fn new(api: &'a Api) -> Self {
         Self {
             importer: Importer::new(api),
@@ -39,17 +35,10 @@ impl<'a> Judge<'a> {
     }
 
     /// Makes calls, up to the first wrong answer.
-    ///
-    /// # Errors
-    /// See [`Judge::call`].
     pub fn run<'c>(&mut self, calls: impl IntoIterator<Item = &'c Call>) -> Result<(), String> {
         calls.into_iter().try_for_each(|call| self.call(call))
     }
 
-    /// Makes a call.
-    ///
-    /// # Errors
-    /// A wrong result of the component.
     pub fn call(&mut self, call: &Call) -> Result<(), String> {
         if let Call::Replay {
             slot,
@@ -117,7 +106,7 @@ impl<'a> Judge<'a> {
 
     /// If outputs can be read in Initialization Mode, initialisation must succeed, and vice versa.
     fn learn_whether_it_fits(&mut self, call: &Call) -> Result<(), String> {
-        let asks = matches!(call, Call::Get { references, .. } if references.len() > 1);
+        let asks = matches!(call, Call::Get(_, references, _) if references.len() > 1);
         let unknown = !self.life.now.computed && self.life.now.fits != Some(false);
         if asks && unknown && self.life.now.phase == Phase::InitializationMode {
             let one = DESCRIPTION.outputs(Kind::Real)[0];
@@ -129,7 +118,7 @@ impl<'a> Judge<'a> {
     fn check_values(&self, call: &Call, values: &[f64]) -> Result<(), String> {
         let now = &self.life.now;
         match call {
-            Call::Get { kind, references, .. } => {
+            Call::Get(kind, references, _) => {
                 for (&reference, &value) in references.iter().zip(values) {
                     let known = of_kind(*kind, reference).is_some_and(|variable| variable.role != Role::Output);
                     if known && value.to_bits() != now.value(reference).to_bits() {
@@ -140,19 +129,15 @@ impl<'a> Judge<'a> {
                     }
                 }
             }
-            Call::GetOutputDerivatives { .. } if !values.iter().all(|value| value.is_finite()) => {
+            Call::GetOutputDerivatives(..) if !values.iter().all(|value| value.is_finite()) => {
                 return Err(format!("{call:?}: {values:?}"));
             }
-            Call::Status {
-                function: StatusFunction::Real,
-                ..
-            } if values != [now.time] => {
+            Call::Status(StatusFunction::Real, ..) if values != [now.time] => {
                 return Err(format!("last successful time {values:?} instead of {}", now.time));
             }
-            Call::Status {
-                function: StatusFunction::Boolean,
-                ..
-            } if values != [0.0] => return Err(format!("terminated: {values:?}")),
+            Call::Status(StatusFunction::Boolean, ..) if values != [0.0] => {
+                return Err(format!("terminated: {values:?}"));
+            }
             _ => {}
         }
         Ok(())
@@ -161,17 +146,15 @@ impl<'a> Judge<'a> {
     /// Checks the outputs after calls that may change them, and the values after calls that set all or none.
     fn check_state(&mut self, call: &Call, status: fmi2Status) -> Result<(), String> {
         let moves = match call {
-            Call::DoStep { .. } => true,
-            Call::ExitInitializationMode | Call::SetState { .. } | Call::Terminate | Call::Set { .. } => {
-                status == fmi2OK
-            }
+            Call::DoStep(..) => true,
+            Call::ExitInitializationMode | Call::SetState(..) | Call::Terminate | Call::Set(..) => status == fmi2OK,
             _ => false,
         };
         let readable = matches!(self.life.now.phase, Phase::StepComplete | Phase::Terminated)
             || (self.life.now.phase == Phase::Error && self.life.now.computed);
         if moves && readable {
             let outputs = self.outputs()?;
-            let anew = matches!(call, Call::DoStep { .. } | Call::ExitInitializationMode) && status == fmi2OK;
+            let anew = matches!(call, Call::DoStep(..) | Call::ExitInitializationMode) && status == fmi2OK;
             if let Some(before) = self
                 .life
                 .now
@@ -183,13 +166,13 @@ impl<'a> Judge<'a> {
             }
             self.life.now.outputs = Some(outputs);
         }
-        if matches!(call, Call::DoStep { .. }) && status == fmi2OK {
+        if matches!(call, Call::DoStep(..)) && status == fmi2OK {
             self.steps += 1;
             self.call(&Call::time())?;
         }
         let sets = match call {
-            Call::SetState { .. } | Call::Reset => status == fmi2OK,
-            Call::Set { .. } => status == fmi2Discard,
+            Call::SetState(..) | Call::Reset => status == fmi2OK,
+            Call::Set(..) => status == fmi2Discard,
             _ => false,
         };
         if sets {

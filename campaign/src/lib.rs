@@ -15,7 +15,7 @@
 //! hostile      saved states with manipulated contents and a correct checksum
 //! ```
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with valid arguments, or with wrong ones on purpose
-#![allow(clippy::missing_panics_doc)] // used only by tests
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)] // used only by tests
 #![allow(clippy::wildcard_imports)] // of the standard's types and statuses
 #![allow(non_upper_case_globals)] // the statuses in patterns are named as in the standard
 

@@ -100,8 +100,8 @@ impl LifeCycle {
             return Fail;
         }
         match call {
-            Call::SetDebugLogging { categories, fault, .. } => self::logging(categories, *fault),
-            Call::SetupExperiment { tolerance, start, stop } => {
+            Call::SetDebugLogging(_, categories, fault) => self::logging(categories, *fault),
+            Call::SetupExperiment(tolerance, start, stop) => {
                 if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop < *start) {
                     Fail
                 } else if tolerance.is_some_and(|tolerance| !(tolerance.is_finite() && tolerance > 0.0)) {
@@ -117,22 +117,18 @@ impl LifeCycle {
                 _ => Open,
             },
             Call::EnterInitializationMode | Call::Terminate | Call::Reset | Call::Renew => Accept,
-            Call::Get {
-                kind,
-                references,
-                fault,
-            } => arrays(*fault, references.len()).unwrap_or_else(|| self.get(*kind, references)),
-            Call::Set { kind, values, fault } => {
-                arrays(*fault, values.len()).unwrap_or_else(|| self.set(*kind, values))
+            Call::Get(kind, references, fault) => {
+                arrays(*fault, references.len()).unwrap_or_else(|| self.get(*kind, references))
             }
-            Call::DoStep { point, size } => self.step(*point, *size),
-            Call::Status { function, kind, fault } => match (fault, function, kind) {
+            Call::Set(kind, values, fault) => arrays(*fault, values.len()).unwrap_or_else(|| self.set(*kind, values)),
+            Call::DoStep(point, size) => self.step(*point, *size),
+            Call::Status(function, kind, fault) => match (fault, function, kind) {
                 (Fault::LastNull | Fault::Misaligned, ..) => Fail,
                 (_, StatusFunction::Real, 2) | (_, StatusFunction::Boolean, 3) => Accept,
                 _ => Discard,
             },
             Call::DirectionalDerivative => Refuse,
-            Call::SetInputDerivatives { values, fault } => {
+            Call::SetInputDerivatives(values, fault) => {
                 let judge = |&(reference, order, value): &(u32, i32, f64)| match continuous_input(reference) {
                     true if order == 1 && value.is_finite() => Accept,
                     true if order == 1 => Discard,
@@ -149,7 +145,7 @@ impl LifeCycle {
                     verdict
                 }
             }
-            Call::GetOutputDerivatives { values, fault } => {
+            Call::GetOutputDerivatives(values, fault) => {
                 let judge = |&(reference, order): &(u32, i32)| {
                     if of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == Role::Output)
                         && order == 1
@@ -163,14 +159,14 @@ impl LifeCycle {
                 three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
             }
             Call::CancelStep => Fail,
-            Call::GetState { fault, .. } => no_fault(*fault, &[Fault::FirstNull, Fault::Foreign]),
-            Call::FreeState { fault, .. } => no_fault(*fault, &[Fault::Foreign]),
-            Call::SetState { slot, fault } => self.held(*slot, *fault, &[]),
-            Call::StateSize { slot, fault } => self.held(*slot, *fault, &[Fault::LastNull]),
-            Call::Serialize { slot, fault } => {
+            Call::GetState(_, fault) => no_fault(*fault, &[Fault::FirstNull, Fault::Foreign]),
+            Call::FreeState(_, fault) => no_fault(*fault, &[Fault::Foreign]),
+            Call::SetState(slot, fault) => self.held(*slot, *fault, &[]),
+            Call::StateSize(slot, fault) => self.held(*slot, *fault, &[Fault::LastNull]),
+            Call::Serialize(slot, fault) => {
                 self.held(*slot, *fault, &[Fault::LastNull, Fault::Endless, Fault::NullAndEndless])
             }
-            Call::Deserialize { slot, damage, fault } => {
+            Call::Deserialize(slot, damage, fault) => {
                 let wrong = [
                     Fault::FirstNull,
                     Fault::LastNull,
@@ -267,7 +263,7 @@ impl LifeCycle {
     pub fn follow(&mut self, call: &Call, status: fmi2Status, warned: bool) {
         let verdict = self.verdict(call);
         let now = &mut self.now;
-        if let (Call::Get { kind, references, .. }, InitializationMode) = (call, now.phase) {
+        if let (Call::Get(kind, references, _), InitializationMode) = (call, now.phase) {
             let reads_output = references
                 .iter()
                 .any(|&reference| of_kind(*kind, reference).is_some_and(|variable| variable.role == Role::Output));
@@ -286,7 +282,7 @@ impl LifeCycle {
             return;
         }
         match call {
-            Call::SetDebugLogging { on, categories, .. } if verdict != Remark => {
+            Call::SetDebugLogging(on, categories, _) if verdict != Remark => {
                 let named = |name: &str| categories.iter().flatten().any(|category| category == name);
                 let (errors, warnings) = (named("logStatusError"), named("logStatusWarning"));
                 (self.errors, self.warnings) = match (on, categories.is_empty()) {
@@ -295,7 +291,7 @@ impl LifeCycle {
                     (false, _) => (self.errors && !errors, self.warnings && !warnings),
                 };
             }
-            Call::SetupExperiment { start, stop, .. } => {
+            Call::SetupExperiment(_, start, stop) => {
                 (now.time, now.stop) = (*start, stop.unwrap_or(f64::INFINITY));
             }
             Call::EnterInitializationMode => {
@@ -315,7 +311,7 @@ impl LifeCycle {
                     ..Self::default()
                 }
             }
-            Call::Set { kind, values, .. } => {
+            Call::Set(kind, values, _) => {
                 for &(reference, value) in values {
                     if let Some(position) = DESCRIPTION.position(reference) {
                         now.values[position] = as_held(*kind, value);
@@ -325,14 +321,14 @@ impl LifeCycle {
                     (now.fits, now.computed) = (None, false);
                 }
             }
-            Call::SetInputDerivatives { values, .. } => {
+            Call::SetInputDerivatives(values, _) => {
                 for &(reference, _, rate) in values.iter().filter(|(_, order, _)| *order == 1) {
                     if let Some(position) = DESCRIPTION.position(reference) {
                         now.rates[position] = rate;
                     }
                 }
             }
-            Call::DoStep { point, size } => {
+            Call::DoStep(point, size) => {
                 self.warned |= warned;
                 let point = point.instant(now.time, *size);
                 let (end, off) = (point + size, (point - now.time).abs());
@@ -346,15 +342,15 @@ impl LifeCycle {
                 self.now.extreme |= self.now.pushed_hard();
                 self.now.rates.fill(0.0);
             }
-            Call::GetState { slot, .. } => self.saved[*slot] = Some(now.clone()),
-            Call::SetState { slot, .. } => {
+            Call::GetState(slot, _) => self.saved[*slot] = Some(now.clone()),
+            Call::SetState(slot, _) => {
                 if let Some(moment) = &self.saved[*slot] {
                     *now = moment.clone();
                 }
             }
-            Call::FreeState { slot, fault } if *fault != Fault::FirstNull => self.saved[*slot] = None,
-            Call::Serialize { slot, .. } => self.written[*slot].clone_from(&self.saved[*slot]),
-            Call::Deserialize { slot, .. } => self.saved[*slot].clone_from(&self.written[*slot]),
+            Call::FreeState(slot, fault) if *fault != Fault::FirstNull => self.saved[*slot] = None,
+            Call::Serialize(slot, _) => self.written[*slot].clone_from(&self.saved[*slot]),
+            Call::Deserialize(slot, ..) => self.saved[*slot].clone_from(&self.written[*slot]),
             _ => {}
         }
     }

@@ -6,15 +6,14 @@ use crate::states::Phase;
 /// The expected state of an instance, which a saved state restores.
 #[derive(Clone, Debug)]
 pub struct Moment {
-    /// State in the life cycle.
     pub phase: Phase,
     /// Values of the inputs and parameters, in the order of the description.
     pub values: Vec<f64>,
     /// Derivatives of the inputs over the next step, in the same order.
     pub rates: Vec<f64>,
-    /// Its time, s.
+    /// Of the instance, s.
     pub time: f64,
-    /// Stop time, s.
+    /// s.
     pub stop: f64,
     /// Whether outputs have been computed.
     pub computed: bool,
@@ -27,7 +26,6 @@ pub struct Moment {
 }
 
 impl Default for Moment {
-    /// A new instance.
     fn default() -> Self {
         Self {
             phase: Phase::Instantiated,

@@ -11,9 +11,7 @@ use crate::judge::Judge;
 /// Counters of a sequence.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Count {
-    /// Calls made.
     pub calls: u64,
-    /// Communication steps made.
     pub steps: u64,
 }
 
@@ -21,9 +19,7 @@ pub struct Count {
 const LENGTH: usize = 2000;
 
 /// Makes at least `wanted` random calls, starting with the sequence of number `seed`.
-///
-/// # Panics
-/// At the first wrong answer, with the seed and the shortest sequence found that shows it.
+/// Panics at the first wrong answer, with the seed and the shortest sequence found that shows it.
 pub fn campaign(api: &Api, seed: u64, wanted: u64) -> Count {
     let mut count = Count::default();
     for seed in seed.. {
@@ -38,9 +34,7 @@ pub fn campaign(api: &Api, seed: u64, wanted: u64) -> Count {
 }
 
 /// Makes the calls drawn from the bytes.
-///
-/// # Errors
-/// The first wrong answer, with the shortest sequence found that shows it.
+/// An error is the first wrong answer, with the shortest sequence found that shows it.
 pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
     let mut judge = Judge::new(api);
     let mut choices = Choices::new(bytes);
@@ -62,9 +56,6 @@ pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
 }
 
 /// Makes the calls on a new instance.
-///
-/// # Errors
-/// The first wrong answer.
 pub fn run(api: &Api, calls: &[Call]) -> Result<(), String> {
     Judge::new(api).run(calls)
 }

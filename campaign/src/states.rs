@@ -7,7 +7,6 @@ use Phase::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
 
 /// State in the life cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)] // the states of the standard
 pub enum Phase {
     Instantiated,
     InitializationMode,
@@ -17,7 +16,6 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// Every state.
     pub const ALL: [Self; 5] = [Instantiated, InitializationMode, StepComplete, Terminated, Error];
 
     /// Its name in messages.

@@ -23,7 +23,7 @@ fn live(api: &Api) {
         Call::serialize(0),
         Call::deserialize(2),
         Call::save(2),
-        Call::FreeState { slot, fault },
+        Call::FreeState(slot, fault),
         Call::step(-1.0),
         Call::restore(0),
         Call::step(1e-5),

@@ -1,10 +1,9 @@
 //! A scene over time.
 
+use relay_contact::many::RunError;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{IntegerOutput, RealOutput};
-
-use crate::Failure;
 
 /// What the page shows at a communication point; the extremes are those since the point before.
 const COLUMNS: [RealOutput; 5] = [
@@ -60,10 +59,7 @@ impl Curves {
 }
 
 /// Runs a scene file, given as text.
-///
-/// # Errors
-/// A [`Failure`] with its cause.
-pub fn curves(text: &str) -> Result<Curves, Failure> {
+pub fn curves(text: &str) -> Result<Curves, RunError> {
     let file: SceneFile = text.parse()?;
     let start = file.inputs_over(0.0, file.communication_step)?;
     let mut contact = Simulation::new(&file.scene, &start, 0.0)?;
@@ -91,7 +87,7 @@ mod tests {
                          effects.excitation = \"Sine\"\nexcitation.frequency = 1000\nexcitation.amplitude = 400\n";
 
     #[test]
-    fn the_numbers_are_laid_out_as_the_page_reads_them() -> Result<(), Failure> {
+    fn the_numbers_are_laid_out_as_the_page_reads_them() -> Result<(), RunError> {
         let curves = curves(SCENE)?;
         let numbers = curves.numbers();
         let [count, rows, events] = [numbers[0], numbers[1], numbers[2]];

@@ -3,13 +3,12 @@
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
+use relay_contact::many::RunError;
 use relay_contact::reference::{self, Model};
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, RealOutput};
-
-use crate::Failure;
 
 /// To this part of it: less than the line on the page is wide.
 const RESOLUTION: f64 = 2e-3;
@@ -28,10 +27,7 @@ const WATCHED: f64 = 4.0;
 
 /// Least amplitude (m/s²) of a sine of this frequency (Hz) at which the contact of a scene opens in steady vibration, and that
 /// of linear theory. The scene's own excitation does not act. Infinite if no level opens it.
-///
-/// # Errors
-/// A [`Failure`] with its cause.
-pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], Failure> {
+pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], RunError> {
     let file: SceneFile = text.parse()?;
     let mut scene = file.scene;
     scene.effects.excitation = ExcitationKind::Sine;
@@ -71,7 +67,7 @@ pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], Failure> {
 
 /// Whether the contact opens in steady vibration: after it has risen to the level and was held, each for as long as the start
 /// takes to die away.
-fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, Failure> {
+fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, RunError> {
     let mut scene = scene.clone();
     let frequency = scene.excitation.frequency;
     let natural = TAU * Simulation::new(&scene, inputs, 0.0)?.real(RealOutput::PreloadFrequency);
@@ -89,7 +85,7 @@ fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, Failure> {
 mod tests {
     use super::*;
 
-    fn scene(frequency: f64, rest: &str) -> Result<[f64; 2], Failure> {
+    fn scene(frequency: f64, rest: &str) -> Result<[f64; 2], RunError> {
         let text = format!("stop = 1\ncommunicationStep = 1\noutputs = []\n[parameters]\n{rest}");
         level(&text, frequency)
     }
@@ -97,7 +93,7 @@ mod tests {
     /// The contact is closed at rest, so the level of a linearised one is that of linear theory; the search and the run in
     /// time know nothing of that.
     #[test]
-    fn a_linearised_contact_opens_at_the_level_of_linear_theory() -> Result<(), Failure> {
+    fn a_linearised_contact_opens_at_the_level_of_linear_theory() -> Result<(), RunError> {
         for frequency in [200.0, 1000.0, 2500.0] {
             let [found, linear] = scene(frequency, "effects.contactLaw = \"Linearised\"")?;
             assert!(
@@ -110,11 +106,11 @@ mod tests {
 
     /// Of the report, which finds it by another rise and another search: 29.7 g near the first resonance.
     #[test]
-    fn the_published_contact_opens_most_easily_at_the_level_of_the_report() -> Result<(), Failure> {
+    fn the_published_contact_opens_most_easily_at_the_level_of_the_report() -> Result<(), RunError> {
         let levels = [1250.0, 1300.0, 1350.0, 1400.0, 1450.0].map(|frequency| scene(frequency, ""));
         let least = levels
             .into_iter()
-            .try_fold(f64::INFINITY, |least, level| Ok::<_, Failure>(least.min(level?[0])))?;
+            .try_fold(f64::INFINITY, |least, level| Ok::<_, RunError>(least.min(level?[0])))?;
         assert!((least / 9.80665 - 29.7).abs() < 0.3, "{}", least / 9.80665);
         Ok(())
     }

@@ -2,46 +2,17 @@
 //!
 //! The page writes the text of a scene file where [`scene_text`] says, calls [`run_scene`] or [`opening_level`], and reads
 //! [`results`], or after a failure [`message`]. Pointers only lead out, into buffers that live until the next call.
+#![allow(clippy::missing_errors_doc)] // used only by the page
 
 mod curves;
 mod level;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use relay_contact::error::{SceneError, StepError};
+use relay_contact::many::RunError;
 
 pub use curves::{Curves, curves};
 pub use level::level;
-
-/// What cannot be simulated.
-#[derive(Debug)]
-pub enum Failure {
-    /// The scene is wrong.
-    Scene(SceneError),
-    /// A step cannot be computed.
-    Step(StepError),
-}
-
-impl From<SceneError> for Failure {
-    fn from(error: SceneError) -> Self {
-        Self::Scene(error)
-    }
-}
-
-impl From<StepError> for Failure {
-    fn from(error: StepError) -> Self {
-        Self::Step(error)
-    }
-}
-
-impl std::fmt::Display for Failure {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Self::Scene(error) => error.fmt(formatter),
-            Self::Step(error) => error.fmt(formatter),
-        }
-    }
-}
 
 struct Buffers {
     text: Vec<u8>,
@@ -60,7 +31,7 @@ fn buffers() -> MutexGuard<'static, Buffers> {
 }
 
 /// Keeps the results, or the message; returns the number of results, 0 after a failure.
-fn keep(compute: impl FnOnce(&str) -> Result<Vec<f64>, Failure>) -> usize {
+fn keep(compute: impl FnOnce(&str) -> Result<Vec<f64>, RunError>) -> usize {
     let mut buffers = buffers();
     let outcome = compute(&String::from_utf8_lossy(&buffers.text));
     (buffers.results, buffers.message) = match outcome {

@@ -6,6 +6,7 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{PusherKind, RealOutput};
+use testing::scenes::accelerated;
 
 use crate::case::{Check, cases, closest};
 use crate::ride::{Ride, Segment, conserved};
@@ -67,10 +68,7 @@ fn thrown(scene: Scene, back: bool) -> Result<Vec<Check>> {
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0)?;
     let mut furthest = 0.0_f64;
     for segment in segments(-1500.0) {
-        let inputs = Inputs {
-            base_acceleration: segment.acceleration,
-            ..Inputs::default()
-        };
+        let inputs = accelerated(segment.acceleration, 0.0);
         for _ in 0..100 {
             simulation.step(&inputs, simulation.time(), segment.duration / 100.0)?;
             furthest = furthest.max(simulation.real(RealOutput::ArmatureGap));

@@ -7,9 +7,7 @@ use anyhow::{Result, ensure};
 /// A scene that is hard for integrators, and the properties that must hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// The scene.
     pub name: &'static str,
-    /// The difficulty.
     pub difficulty: &'static str,
     /// Simulates it and measures each property.
     pub(crate) measure: fn() -> Result<Vec<Check>>,
@@ -29,10 +27,8 @@ pub(crate) use cases;
 
 impl Case {
     /// The properties, if all hold.
-    ///
-    /// # Errors
-    /// If one does not hold or the simulation fails: a failed step, a number that is not finite, a tensile contact
-    /// force, more integration steps than the case allows.
+    /// Else an error, also of a failed step, a number that is not finite, a tensile contact force, or more integration steps than the
+    /// case allows.
     pub fn keeps_its_properties(&self) -> Result<Vec<Check>> {
         let checks = (self.measure)()?;
         let broken = checks.iter().filter(|check| !check.is_kept());
@@ -45,7 +41,6 @@ impl Case {
 /// A property and its deviation.
 #[derive(Clone, Debug)]
 pub struct Check {
-    /// The property.
     pub property: &'static str,
     /// Deviation from it, at most `allowed` if the property holds.
     pub measured: f64,
@@ -76,6 +71,11 @@ impl Check {
     /// No deviation is allowed.
     pub(crate) fn exact(property: &'static str, measured: f64, unit: &'static str) -> Self {
         Self::new(property, (measured, 0.0), unit, "exact")
+    }
+
+    /// Instants of openings and closings are right to a nanosecond.
+    pub(crate) fn instants(property: &'static str, measured: f64) -> Self {
+        Self::new(property, (measured, 1e-9), "s", "accuracy guaranteed for event times")
     }
 
     /// A result is accurate to the tolerance.

@@ -1,14 +1,14 @@
 //! Extreme contacts, and impacts on them.
 
 use anyhow::{Result, ensure};
-use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ContactLawKind;
+use testing::scenes::accelerated;
 
 use crate::case::{Check, cases, closest};
 use crate::energy_balance::{balances, square};
-use crate::ride::{Ride, Segment, conserved};
+use crate::ride::{Ride, Segment, changed, conserved};
 use testing::rig::{Rig, compose, hertz, oscillator, undamped};
 
 cases! { CASES:
@@ -43,22 +43,18 @@ cases! { CASES:
 }
 
 fn with_stiffness(factor: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.contact.moving.youngs_modulus *= factor;
-    scene.contact.fixed.youngs_modulus *= factor;
-    scene
+    changed(|scene| {
+        scene.contact.moving.youngs_modulus *= factor;
+        scene.contact.fixed.youngs_modulus *= factor;
+    })
 }
 
 pub(crate) fn with_damping(damping: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.contact.damping = damping;
-    scene
+    changed(|scene| scene.contact.damping = damping)
 }
 
 pub(crate) fn with_overtravel(overtravel: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.contact.overtravel = overtravel;
-    scene
+    changed(|scene| scene.contact.overtravel = overtravel)
 }
 
 fn shaken(scene: Scene) -> Result<Vec<Check>> {
@@ -124,10 +120,7 @@ fn accumulating() -> Result<Vec<Check>> {
     let model = compose(&[oscillator(mass, 0.0)], hertz(9.3e9, 1e-6), 1e-6, 1e-6, mass * weight);
     let mut coarse = Rig::new(model.clone());
     let mut fine = Rig::new(model);
-    let inputs = Inputs {
-        base_acceleration: weight,
-        ..Inputs::default()
-    };
+    let inputs = accelerated(weight, 0.0);
     coarse.run_to(&inputs, 0.05)?;
     let (mut closings, mut last) = (0, None);
     for point in 1..=50_000 {

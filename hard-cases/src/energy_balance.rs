@@ -5,6 +5,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
+use testing::scenes::accelerated;
 
 use crate::case::{Check, worst};
 
@@ -19,10 +20,7 @@ pub(crate) fn balances(mut scene: Scene, stop: f64, acceleration: impl Fn(f64) -
     let mut step = 0_u32;
     while f64::from(step) * STEP < stop {
         let time = f64::from(step) * STEP;
-        let inputs = Inputs {
-            base_acceleration: acceleration(time),
-            ..Inputs::default()
-        };
+        let inputs = accelerated(acceleration(time), 0.0);
         let before = contact.real(RealOutput::ContactIndentation);
         contact.step(&inputs, time, STEP)?;
         path += (contact.real(RealOutput::ContactIndentation) - before).abs();

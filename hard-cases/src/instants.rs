@@ -7,10 +7,10 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::ExcitationKind;
 
 use crate::case::{Check, cases};
 use testing::rig::{Rig, compose, oscillator, stop};
+use testing::scenes::{largest_difference, shaken};
 
 cases! { CASES:
     "Chatter at 41 g in communication steps of 1 µs to 10 ms",
@@ -34,10 +34,7 @@ const STOP: f64 = 0.01;
 
 /// Times of the openings and closings, s, of the specimen at 400 m/s2 and 1 kHz, with the given communication points.
 fn events(points: impl IntoIterator<Item = f64>) -> Result<Vec<f64>> {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = 400.0;
-    let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+    let mut contact = Simulation::new(&shaken(400.0, 1000.0), &Inputs::default(), 0.0)?;
     let mut events = Vec::new();
     for point in points {
         let time = contact.time();
@@ -56,19 +53,13 @@ fn difference(found: &[f64], expected: &[f64]) -> f64 {
     if found.len() != expected.len() || expected.is_empty() {
         return f64::INFINITY;
     }
-    let differences = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, f64::max)
+    largest_difference(found, expected)
 }
 
 fn same_instants(differences: impl IntoIterator<Item = f64>) -> Vec<Check> {
     let difference = differences.into_iter().fold(0.0, f64::max);
     let property = "the same openings and closings at the same times";
-    vec![Check::new(
-        property,
-        (difference, 1e-9),
-        "s",
-        "accuracy guaranteed for event times",
-    )]
+    vec![Check::instants(property, difference)]
 }
 
 fn communication_steps() -> Result<Vec<Check>> {
@@ -169,13 +160,10 @@ fn stiff_contact() -> Result<Vec<Check>> {
     let mut rig = Rig::new(model);
     rig.launch(&[-speed * mass.sqrt()]);
     rig.run_to(&Inputs::default(), 1e-3)?;
-    let events = rig.state.contact().last_opening.zip(rig.state.contact().last_closing);
-    let lasted = events.map_or(0.0, |(opening, closing)| opening - closing);
+    let (closing, opening) = rig.touch();
     let exact = PI * (mass / stiffness).sqrt();
-    let duration = (
-        (lasted / exact - 1.0).abs(),
-        10.0 * tolerance + 1e-3 * f64::EPSILON / exact,
-    );
+    let allowed = 10.0 * tolerance + 1e-3 * f64::EPSILON / exact;
+    let duration = (((opening - closing) / exact - 1.0).abs(), allowed);
     let rounding = "error of the force and rounding of a time of 1 ms";
     let back = rig.state.modes.first().context("no mode")?.v / mass.sqrt();
     let speed = ((back / speed - 1.0).abs(), tolerance * PI);

@@ -92,10 +92,7 @@ impl Ride {
     }
 
     /// Simulates it with each segment in `parts` communication steps.
-    ///
-    /// # Errors
-    /// If it cannot be simulated, a number is not finite or the contact force is tensile at a communication point, or
-    /// the step limit is exceeded.
+    /// A number that is not finite, a tensile contact force at a communication point, and more steps than allowed are errors.
     pub fn run(&self, parts: u32) -> Result<Outcome> {
         let mut model = Model::new(&self.scene, 0.0)?;
         // Room for the mode that meters the work of the support.
@@ -253,6 +250,13 @@ impl Outcome {
     fn tolerance(&self) -> f64 {
         self.rig.model.scene().solver.effective_tolerance()
     }
+}
+
+/// The specimen with a change.
+pub(crate) fn changed(change: impl FnOnce(&mut Scene)) -> Scene {
+    let mut scene = Scene::default();
+    change(&mut scene);
+    scene
 }
 
 /// Without damping and inputs: the energy of a thrown spring, read every microsecond.

@@ -4,28 +4,29 @@ use anyhow::{Result, ensure};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 
 use crate::case::{Check, cases, closest, worst};
-use crate::ride::{Ride, Segment};
+use crate::ride::{Ride, Segment, changed};
+use crate::spring::shaken;
+use testing::scenes::shaken as excited;
 
 cases! { CASES:
     "Tolerance 0.1", "the coarsest allowed"
-        => with_tolerance(0.1);
+        => shaken(|scene| scene.solver.tolerance = 0.1);
     "Tolerance 10⁻¹²", "below the rounding floor: the smallest possible tolerance is used"
         => {
-            let mut scene = Scene::default();
-            scene.solver.tolerance = 1e-12;
+            let scene = changed(|scene| scene.solver.tolerance = 1e-12);
             ensure!(scene.solver.effective_tolerance() == Solver::TOLERANCE_FLOOR);
-            with_tolerance(1e-12)
+            Ride::shaken(scene).checks()
         };
     "Light spring launched at 6.5 m/s, tolerance 10⁻¹⁰",
         "the tolerance, relative to the preload, is below the rounding error of the impact force"
         => below_rounding();
     "1 mode", "the coarsest model of the spring"
-        => with_modes(1);
+        => shaken(|scene| scene.solver.modes = 1);
     "40 modes", "the highest is above 1 MHz"
-        => with_modes(40);
+        => shaken(|scene| scene.solver.modes = 40);
     "Bonded contact after jumps of 3 000 g, tolerance 1e-6 to 1e-11",
         "rounding of the force of a stiff contact does not shrink with the step"
         => closest([1e-6, 1e-8, 1e-10, 1e-11].map(bonded_after_jumps));
@@ -41,12 +42,6 @@ fn force(contact: &Simulation) -> f64 {
     contact.real(RealOutput::ContactForce)
 }
 
-fn with_tolerance(tolerance: f64) -> Result<Vec<Check>> {
-    let mut scene = Scene::default();
-    scene.solver.tolerance = tolerance;
-    Ride::shaken(scene).checks()
-}
-
 fn bonded_after_jumps(tolerance: f64) -> Result<Vec<Check>> {
     let mut scene = Scene::default();
     scene.effects.contact_law = ContactLawKind::Bonded;
@@ -59,17 +54,10 @@ fn bonded_after_jumps(tolerance: f64) -> Result<Vec<Check>> {
         (2.06e-4, 0.0, 0.0),
     ];
     let segments = segments.map(|(duration, acceleration, support)| Segment {
-        duration,
-        acceleration,
         support,
+        ..Segment::accelerated(duration, acceleration)
     });
     Ride::new(scene, segments).checks_of_large_forces()
-}
-
-fn with_modes(modes: i32) -> Result<Vec<Check>> {
-    let mut scene = Scene::default();
-    scene.solver.modes = modes;
-    Ride::shaken(scene).checks()
 }
 
 fn below_rounding() -> Result<Vec<Check>> {
@@ -103,9 +91,7 @@ fn nanoseconds() -> Result<Vec<Check>> {
 }
 
 fn seconds() -> Result<Vec<Check>> {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
-    let mut seconds = Simulation::new(&scene, &Inputs::default(), 0.0)?;
+    let mut seconds = Simulation::new(&excited(98.0, 1000.0), &Inputs::default(), 0.0)?;
     let mut fine = seconds.clone();
     for step in 0..4000 {
         fine.step(&Inputs::default(), f64::from(step) * 1e-5, 1e-5)?;
@@ -117,12 +103,9 @@ fn seconds() -> Result<Vec<Check>> {
     }
     let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale();
     let steps = seconds.integer(IntegerOutput::SolverSteps).try_into()?;
+    let property = "the same force after whole periods, independent of the run time";
     Ok(vec![
-        Check::two_runs(
-            "the same force after whole periods, independent of the run time",
-            off,
-            tolerance,
-        ),
+        Check::two_runs(property, off, tolerance),
         Check::steps(steps, 999_999),
     ])
 }

@@ -7,14 +7,14 @@ use relay_contact::scene::Scene;
 use relay_contact::variables::AxialForceKind;
 
 use crate::case::{Check, cases};
-use crate::ride::{Ride, Segment};
+use crate::ride::{Ride, Segment, changed};
 use testing::rig::undamped;
 
 cases! { CASES:
     "Spring without damping", "only the contact dissipates"
-        => with_damping(0.0);
+        => shaken(|scene| scene.beam.stiffness_damping = 0.0);
     "Spring with damping of 10 ms", "every mode is overdamped"
-        => with_damping(1e-2);
+        => shaken(|scene| scene.beam.stiffness_damping = 1e-2);
     "System without damping, under vibration", "no damping removes energy added by errors"
         => Ride::shaken(undamped()).checks();
     "System without damping, launched at the contact at 4 m/s", "no damping removes energy added by errors"
@@ -23,22 +23,16 @@ cases! { CASES:
         "starting from rest, the energy gives no scale for rounding errors"
         => pushed();
     "Spring without rivet", "without its mass the tip follows the high modes most"
-        => {
-            let mut scene = Scene::default();
-            scene.tip.mass = 0.0;
-            Ride::shaken(scene).checks()
-        };
+        => shaken(|scene| scene.tip.mass = 0.0);
     "Short light spring without damping, pushed within the tolerance",
         "modes above a gigahertz, which need not be resolved: at most 1000 integration steps"
         => pushed_within_tolerance();
     "Axial force at 0.999 of the buckling load", "the open spring has almost no stiffness left"
-        => Ride::shaken(pressed(0.999 * buckling_load())).checks();
+        => shaken(|scene| press(scene, 0.999));
 }
 
-fn with_damping(damping: f64) -> Result<Vec<Check>> {
-    let mut scene = Scene::default();
-    scene.beam.stiffness_damping = damping;
-    Ride::shaken(scene).checks()
+pub(crate) fn shaken(change: impl FnOnce(&mut Scene)) -> Result<Vec<Check>> {
+    Ride::shaken(changed(change)).checks()
 }
 
 fn thrown() -> Result<Vec<Check>> {
@@ -73,16 +67,10 @@ fn pushed_within_tolerance() -> Result<Vec<Check>> {
     .checks()
 }
 
-/// `pi^2 E I / (4 L^2)`, N.
-fn buckling_load() -> f64 {
-    let beam = Scene::default().beam;
+/// Presses the spring with a share of its buckling load, `pi^2 E I / (4 L^2)`.
+fn press(scene: &mut Scene, share: f64) {
+    let beam = &mut scene.beam;
     let bending_stiffness = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
-    PI * PI * bending_stiffness / (4.0 * beam.length.powi(2))
-}
-
-fn pressed(axial_force: f64) -> Scene {
-    let mut scene = Scene::default();
+    beam.axial_force = share * PI * PI * bending_stiffness / (4.0 * beam.length.powi(2));
     scene.effects.axial_force = AxialForceKind::Prescribed;
-    scene.beam.axial_force = axial_force;
-    scene
 }

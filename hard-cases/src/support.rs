@@ -5,6 +5,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, RealOutput};
+use testing::scenes::supported;
 
 use crate::case::{Check, cases, closest};
 use crate::contact::with_overtravel;
@@ -32,21 +33,10 @@ cases! { CASES:
 
 fn touch_at_the_start() -> Result<Vec<Check>> {
     let ride = Ride::new(with_overtravel(0.0), [Segment::moved(1e-3, 1e-4)]);
-    let closing = ride
-        .run(1)?
-        .rig
-        .state
-        .contact()
-        .last_closing
-        .context("no closing reported")?;
+    let closing = ride.run(1)?.rig.state.contact().last_closing;
     let mut checks = ride.checks()?;
-    let reason = "accuracy guaranteed for event times";
-    checks.push(Check::new(
-        "the contact closes at the start",
-        (closing, 1e-9),
-        "s",
-        reason,
-    ));
+    let closing = closing.context("no closing reported")?;
+    checks.push(Check::instants("the contact closes at the start", closing));
     Ok(checks)
 }
 
@@ -78,10 +68,7 @@ fn crushing() -> Result<Vec<Check>> {
 fn crushed_and_back() -> Result<Vec<Check>> {
     let mut scene = Scene::default();
     scene.effects.axial_force = AxialForceKind::None;
-    let moved = |displacement: f64| Inputs {
-        support_displacement: displacement,
-        ..Inputs::default()
-    };
+    let moved = |displacement: f64| supported(displacement, 0.0);
     let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
     let tolerance = scene.solver.effective_tolerance();
     let allowed = tolerance * contact.model().force_scale();
@@ -117,10 +104,7 @@ fn withdrawing() -> Result<Vec<Check>> {
     let ride = Ride::new(Scene::default(), [Segment::moved(0.2, -2.01e-4)]);
     let (outcome, mut checks) = ride.checked()?;
     ensure!(outcome.forces.len() == 1);
-    checks.push(Check::exact(
-        "no force once the contact is open",
-        outcome.forces[0].abs(),
-        "N",
-    ));
+    let open = outcome.forces[0].abs();
+    checks.push(Check::exact("no force once the contact is open", open, "N"));
     Ok(checks)
 }

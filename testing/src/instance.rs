@@ -8,7 +8,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::variables::{GUID, Group, VARIABLES, Variable};
 
-use crate::log::{Log, Message, callbacks};
+use crate::log::{self, Log, Message, callbacks};
 
 /// The type of `fmi2Instantiate`.
 pub type Instantiate = unsafe extern "C" fn(
@@ -23,7 +23,6 @@ pub type Instantiate = unsafe extern "C" fn(
 
 /// Arguments of `fmi2Instantiate`, valid by default.
 #[derive(Clone, Copy, Debug)]
-#[allow(missing_docs)] // named as in the standard
 pub struct Arguments<'a> {
     pub name: Option<&'a str>,
     pub kind: fmi2Type,
@@ -113,19 +112,16 @@ impl Instance {
         instance
     }
 
-    /// `fmi2SetupExperiment`.
     pub fn setup(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> fmi2Status {
         let defined = |number: Option<f64>| (number.is_some().into(), number.unwrap_or(0.0));
         let ((tolerance_defined, tolerance), (stop_defined, stop)) = (defined(tolerance), defined(stop));
         unsafe { fmi2SetupExperiment(self.component, tolerance_defined, tolerance, start, stop_defined, stop) }
     }
 
-    /// `fmi2EnterInitializationMode`.
     pub fn enter_initialization_mode(&self) -> fmi2Status {
         unsafe { fmi2EnterInitializationMode(self.component) }
     }
 
-    /// `fmi2ExitInitializationMode`.
     pub fn exit_initialization_mode(&self) -> fmi2Status {
         unsafe { fmi2ExitInitializationMode(self.component) }
     }
@@ -136,7 +132,6 @@ impl Instance {
         assert_eq!(self.exit_initialization_mode(), fmi2OK, "{:?}", self.log);
     }
 
-    /// `fmi2SetReal`.
     pub fn set_reals<const N: usize>(&self, names: [&str; N], values: [f64; N]) -> fmi2Status {
         self.set_reals_of(names.map(vr), values)
     }
@@ -151,24 +146,20 @@ impl Instance {
         self.set_reals([name], [value])
     }
 
-    /// `fmi2SetInteger`.
     pub fn set_integer(&self, name: &str, value: i32) -> fmi2Status {
         unsafe { fmi2SetInteger(self.component, [vr(name)].as_ptr(), 1, &raw const value) }
     }
 
-    /// `fmi2SetBoolean`.
     pub fn set_boolean(&self, name: &str, value: bool) -> fmi2Status {
         let value = value.into();
         unsafe { fmi2SetBoolean(self.component, [vr(name)].as_ptr(), 1, &raw const value) }
     }
 
-    /// `fmi2SetString`.
     pub fn set_string(&self, name: &str, value: &str) -> fmi2Status {
         let value = CString::new(value).unwrap_or_default();
         unsafe { fmi2SetString(self.component, [vr(name)].as_ptr(), 1, [value.as_ptr()].as_ptr()) }
     }
 
-    /// The value of a string variable.
     pub fn string(&self, name: &str) -> String {
         let (reference, mut value) = (vr(name), ptr::null());
         let status = unsafe { fmi2GetString(self.component, &raw const reference, 1, &raw mut value) };
@@ -198,26 +189,27 @@ impl Instance {
 
     /// Sets the inputs with their derivatives.
     pub fn set_inputs(&self, inputs: &Inputs) {
-        let names = [
-            "base.acceleration",
-            "support.displacement",
-            "second.displacement",
-            "contact.current",
-        ];
-        let values = [
-            inputs.base_acceleration,
-            inputs.support_displacement,
-            inputs.second_displacement,
-            inputs.contact_current,
-        ];
-        let rates = [
-            inputs.base_acceleration_rate,
-            inputs.support_displacement_rate,
-            inputs.second_displacement_rate,
-            inputs.contact_current_rate,
-        ];
-        assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
-        assert_eq!(self.set_rates(names, [1; 4], rates), fmi2OK, "{:?}", self.log);
+        for (name, value, rate) in [
+            (
+                "base.acceleration",
+                inputs.base_acceleration,
+                inputs.base_acceleration_rate,
+            ),
+            (
+                "support.displacement",
+                inputs.support_displacement,
+                inputs.support_displacement_rate,
+            ),
+            (
+                "second.displacement",
+                inputs.second_displacement,
+                inputs.second_displacement_rate,
+            ),
+            ("contact.current", inputs.contact_current, inputs.contact_current_rate),
+        ] {
+            assert_eq!(self.set_real(name, value), fmi2OK, "{:?}", self.log);
+            assert_eq!(self.set_rates([name], [1], [rate]), fmi2OK, "{:?}", self.log);
+        }
     }
 
     /// `fmi2SetRealInputDerivatives`, of these orders.
@@ -247,7 +239,6 @@ impl Instance {
         (status, value)
     }
 
-    /// The value of a real variable.
     pub fn real(&self, name: &str) -> f64 {
         let (status, value) = self.try_real(name);
         assert_eq!(status, fmi2OK, "{name}: {:?}", self.log);
@@ -262,7 +253,6 @@ impl Instance {
         values
     }
 
-    /// The value of an integer variable.
     pub fn integer(&self, name: &str) -> i32 {
         let (reference, mut value) = (vr(name), i32::MIN);
         let status = unsafe { fmi2GetInteger(self.component, &raw const reference, 1, &raw mut value) };
@@ -270,7 +260,6 @@ impl Instance {
         value
     }
 
-    /// The value of a Boolean variable.
     pub fn boolean(&self, name: &str) -> bool {
         let (reference, mut value) = (vr(name), -1);
         let status = unsafe { fmi2GetBoolean(self.component, &raw const reference, 1, &raw mut value) };
@@ -278,17 +267,14 @@ impl Instance {
         value == fmi2True
     }
 
-    /// `fmi2DoStep`.
     pub fn step(&self, point: f64, size: f64) -> fmi2Status {
         unsafe { fmi2DoStep(self.component, point, size, fmi2True) }
     }
 
-    /// `fmi2Reset`.
     pub fn reset(&self) -> fmi2Status {
         unsafe { fmi2Reset(self.component) }
     }
 
-    /// `fmi2GetFMUstate`.
     pub fn save(&self) -> fmi2FMUstate {
         let mut state = ptr::null_mut();
         assert_eq!(unsafe { fmi2GetFMUstate(self.component, &raw mut state) }, fmi2OK);
@@ -296,18 +282,15 @@ impl Instance {
         state
     }
 
-    /// `fmi2SetFMUstate`.
     pub fn restore(&self, state: fmi2FMUstate) -> fmi2Status {
         unsafe { fmi2SetFMUstate(self.component, state) }
     }
 
-    /// `fmi2FreeFMUstate`.
     pub fn free(&self, mut state: fmi2FMUstate) {
         assert_eq!(unsafe { fmi2FreeFMUstate(self.component, &raw mut state) }, fmi2OK);
         assert!(state.is_null());
     }
 
-    /// A saved state as bytes.
     pub fn to_bytes(&self, state: fmi2FMUstate) -> Vec<fmi2Byte> {
         let (component, mut size) = (self.component, 0);
         unsafe {
@@ -337,10 +320,7 @@ impl Instance {
 
     /// The messages since the last call of this function.
     pub fn messages(&self) -> Vec<Message> {
-        self.log
-            .lock()
-            .map(|mut log| std::mem::take(&mut *log))
-            .unwrap_or_default()
+        log::taken(&self.log)
     }
 
     /// Asserts that the call returned the status, with a single message that contains all `parts`.

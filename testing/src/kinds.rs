@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use fastrand::Rng;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Spring;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape};
+use relay_contact::scene::spring::GivenMode;
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, ResistanceKind};
 
 use crate::parts;
 use crate::relays::{Relay, after, logarithmic, steps, uniform};
 use crate::scenes::tip_stiffness;
-use crate::springs::{mode, spring_file};
+use crate::springs::{mode, of_modes, spring_file};
 
 /// A kind of relays: its name, how many of a hundred are of it, and the relay of a number.
 pub type Kind = (&'static str, u8, fn(u64) -> Relay);
@@ -164,11 +164,7 @@ pub fn with_modes(number: u64) -> Relay {
             own_mode.participation,
         )
     });
-    let shape = Shape::Modes(Modes {
-        compliance: 1.0 / tip_stiffness(scene),
-        parallel_compliance: None,
-        modes: given.collect(),
-    });
+    let shape = of_modes(1.0 / tip_stiffness(scene), given);
     scene.spring = spring_file(&format!("random modes {number}"), shape);
     relay
 }

@@ -13,8 +13,10 @@
 //! ```
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with valid arguments, or with wrong ones on purpose
 #![allow(clippy::not_unsafe_ptr_arg_deref)] // the component finds out what is a saved state of it
-#![allow(clippy::missing_panics_doc)] // used only by tests
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)] // used only by tests
 #![allow(clippy::wildcard_imports)] // of the standard's types and statuses
+
+use std::fmt::Display;
 
 pub mod allocator;
 pub mod instance;
@@ -26,3 +28,23 @@ pub mod relays;
 pub mod rig;
 pub mod scenes;
 pub mod springs;
+
+/// Asserts that a number is another one to what is allowed.
+#[track_caller]
+pub fn near(of: impl Display, found: f64, expected: f64, allowed: f64) {
+    let off = (found - expected).abs();
+    assert!(
+        off <= allowed,
+        "{of}: {found} instead of {expected}, off by {off:e} of {allowed:e}"
+    );
+}
+
+/// The same, relative to the number expected.
+#[track_caller]
+pub fn close(of: impl Display, found: f64, expected: f64, allowed: f64) {
+    let off = (found / expected - 1.0).abs();
+    assert!(
+        off <= allowed,
+        "{of}: {found} instead of {expected}, off by {off:e} of {allowed:e}"
+    );
+}

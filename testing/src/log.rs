@@ -9,18 +9,19 @@ use relay_contact::fmi2::*;
 /// A message received by the importer.
 #[derive(Clone, Debug)]
 pub struct Message {
-    /// Name of the instance.
     pub instance: String,
-    /// Status.
     pub status: fmi2Status,
-    /// Category.
     pub category: String,
-    /// Text.
     pub text: String,
 }
 
 /// The log the callback writes to.
 pub type Log = Mutex<Vec<Message>>;
+
+/// The messages of a log since the last call of this function.
+pub fn taken(log: &Log) -> Vec<Message> {
+    log.lock().map(|mut log| std::mem::take(&mut *log)).unwrap_or_default()
+}
 
 /// The log callback without its variable arguments, which the component never passes.
 unsafe extern "C" fn logger(

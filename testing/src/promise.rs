@@ -1,7 +1,8 @@
 //! Whether a random relay keeps the promise of `solver.tolerance`, and what `solver.forceError` says of it.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
-use std::panic::resume_unwind;
+use std::sync::Mutex;
 use std::thread;
 
 use relay_contact::reference::MAX_MODES;
@@ -29,17 +30,18 @@ pub const OF_A_STEP: f64 = 1.0 / 250.0;
 /// for, tolerances of 1e-8 and more.
 const UNSEEN: f64 = 100.0;
 
-/// Makes a scene its own reference: the tightest tolerance with all modes, shaken and curved more strongly by a share.
-pub fn tighten(scene: &mut Scene, stronger: f64) {
-    scene.solver.tolerance = Solver::TOLERANCE_FLOOR;
+/// Makes a scene its own reference: all modes, a part of its tolerance but the tightest at least, shaken and curved more strongly by
+/// a share.
+pub fn tighten(scene: &mut Scene, part: f64, stronger: f64) {
+    scene.solver.tolerance = f64::max(part * scene.solver.tolerance, Solver::TOLERANCE_FLOOR);
     scene.solver.modes = i32::try_from(MAX_MODES).unwrap_or(i32::MAX);
     scene.excitation.amplitude *= 1.0 + stronger;
     scene.excitation.spectral_density *= (1.0 + stronger).powi(2);
     scene.contact.curvature_radius *= 1.0 + stronger;
 }
 
-fn reference(relay: &Relay, stronger: f64) -> Option<Course> {
-    match relay.run(|scene| tighten(scene, stronger)) {
+fn reference(relay: &Relay, part: f64, stronger: f64) -> Option<Course> {
+    match relay.run(|scene| tighten(scene, part, stronger)) {
         Ok((course, None)) => Some(course),
         _ => None,
     }
@@ -48,9 +50,7 @@ fn reference(relay: &Relay, stronger: f64) -> Option<Course> {
 /// The reference of a relay beside itself in communication steps of a quarter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disagreement {
-    /// Number of the relay.
     pub number: u64,
-    /// Its kind.
     pub kind: &'static str,
     /// Largest difference of force and extremes, relative as the tolerance.
     pub difference: f64,
@@ -72,9 +72,9 @@ impl Disagreement {
 /// Compares the reference of the relay of a number, drawn by a function such as [`Relay::draw`], with itself; `None` if it has none.
 pub fn compare(number: u64, draw: fn(u64) -> Relay) -> Option<Disagreement> {
     let mut relay = draw(number);
-    let whole = reference(&relay, 0.0)?;
+    let whole = reference(&relay, 0.0, 0.0)?;
     relay.parts = 4;
-    let parts = reference(&relay, 0.0)?;
+    let parts = reference(&relay, 0.0, 0.0)?;
     let (force, extremes) = parts.error(&whole);
     Some(Disagreement {
         number,
@@ -88,15 +88,11 @@ pub fn compare(number: u64, draw: fn(u64) -> Relay) -> Option<Disagreement> {
 /// A relay judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Judged {
-    /// Its number.
     pub number: u64,
-    /// Its kind.
     pub kind: &'static str,
     /// Damping of the first mode of the spring without contact, relative to critical.
     pub damping: f64,
-    /// Whether it opens.
     pub opens: bool,
-    /// Tolerance asked.
     pub tolerance: f64,
     /// Largest error of force and extremes, relative as the tolerance.
     pub error: f64,
@@ -104,15 +100,12 @@ pub struct Judged {
     pub instants: Option<f64>,
     /// `solver.forceError` at the end.
     pub estimate: f64,
-    /// The verdict.
     pub outcome: Outcome,
 }
 
-/// Judges the relay of a number, drawn by a function such as [`Relay::draw`].
-///
-/// # Panics
-/// If it can be simulated at the tightest tolerance, but not at its own.
-pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
+/// Judges the relay of a number, drawn by a function such as [`Relay::draw`], against itself at a `part` of its tolerance, or at the
+/// tightest if that is 0.
+pub fn judge(number: u64, draw: fn(u64) -> Relay, part: f64) -> Judged {
     let relay = draw(number);
     let tolerance = relay.scene.solver.tolerance;
     let mut judged = Judged {
@@ -126,7 +119,7 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
         estimate: 0.0,
         outcome: Outcome::NotRun,
     };
-    let Some(expected) = reference(&relay, 0.0) else {
+    let Some(expected) = reference(&relay, part, 0.0) else {
         return judged;
     };
     let Ok((course, None)) = relay.run(|_| {}) else {
@@ -140,7 +133,7 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
     judged.outcome = if judged.error <= tolerance {
         Outcome::Kept
     } else {
-        match reference(&relay, OF_A_STEP * tolerance) {
+        match reference(&relay, part, OF_A_STEP * tolerance) {
             Some(changed) if larger(changed.error(&expected)) > tolerance => Outcome::IllConditioned,
             _ => Outcome::Above,
         }
@@ -149,8 +142,8 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay) -> Judged {
 }
 
 /// Judges relays on all cores; in order.
-pub fn judge_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Judged> {
-    on_all_cores(first..first + count, |number| judge(number, draw))
+pub fn judge_all(first: u64, count: u64, draw: fn(u64) -> Relay, part: f64) -> Vec<Judged> {
+    on_all_cores(first..first + count, |number| judge(number, draw, part))
 }
 
 /// Compares references on all cores; in order.
@@ -160,20 +153,18 @@ pub fn compare_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Disagr
 }
 
 fn on_all_cores<T: Send>(numbers: Range<u64>, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let threads = thread::available_parallelism().map_or(1, usize::from) as u64;
-    let of = &of;
-    let mut found: Vec<_> = thread::scope(|scope| {
-        let part = |thread| {
-            let own = numbers.clone().filter(move |number| number % threads == thread);
-            own.map(|number| (number, of(number))).collect::<Vec<_>>()
-        };
-        let parts: Vec<_> = (0..threads).map(|thread| scope.spawn(move || part(thread))).collect();
-        parts
-            .into_iter()
-            // Else the relays of a thread that panics would be missing without a word.
-            .flat_map(|part| part.join().unwrap_or_else(|panic| resume_unwind(panic)))
-            .collect()
+    let (left, found) = (Mutex::new(numbers), Mutex::new(BTreeMap::new()));
+    // Each thread takes the next once it has done one, as some take a hundred times as long as others.
+    let next = || left.lock().unwrap().next();
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(number) = next() {
+                    let one = of(number);
+                    found.lock().unwrap().insert(number, one);
+                }
+            });
+        }
     });
-    found.sort_by_key(|(number, _)| *number);
-    found.into_iter().map(|(_, found)| found).collect()
+    found.into_inner().unwrap().into_values().collect()
 }

@@ -139,17 +139,28 @@ impl Relay {
         let duration = (5.0 / frequency).clamp(2e-3, 2e-2);
         let step = logarithmic(rng, 2e-6, 1e-3_f64.min(duration / 5.0));
         Self {
-            kind: "plain",
-            scene,
             shake,
             travel,
+            damping,
+            ..Self::of("plain", scene, steps(step, duration))
+        }
+    }
+
+    /// A scene in so many communication steps of a length (s), driven by its generator alone.
+    pub fn of(kind: &'static str, scene: Scene, steps: (f64, u32)) -> Self {
+        let still = (0.0, 1.0);
+        Self {
+            kind,
+            scene,
+            shake: still,
+            travel: still,
             pusher: 0.0,
             pushes: false,
             held: false,
             knots: Vec::new(),
-            steps: steps(step, duration),
+            steps,
             parts: 1,
-            damping,
+            damping: f64::NAN,
         }
     }
 
@@ -192,9 +203,7 @@ impl Relay {
     }
 
     /// Simulates with the parameters changed by `change`.
-    ///
-    /// # Errors
-    /// Those of the scene; a step that fails ends the course.
+    /// A step that fails ends the course.
     pub fn run(&self, change: impl FnOnce(&mut Scene)) -> Result<(Course, Option<StepError>), SceneError> {
         let mut scene = self.scene.clone();
         change(&mut scene);

@@ -75,14 +75,20 @@ impl Rig {
     }
 
     /// Advances to the instant `time` (s) with the inputs held.
-    ///
-    /// # Errors
-    /// A [`StepError`] if the motion cannot be integrated.
     pub fn run_to(&mut self, inputs: &Inputs, time: f64) -> Result<(), StepError> {
         let start = self.simulation.time();
         self.simulation.step(inputs, start, time - start)?;
         self.state = self.simulation.state_now()?;
         Ok(())
+    }
+
+    /// Instants of the last closing and opening, s.
+    pub fn touch(&self) -> (f64, f64) {
+        let contact = self.state.contact();
+        contact
+            .last_closing
+            .zip(contact.last_opening)
+            .expect("a touch and a release")
     }
 
     /// Energy relative to the preload, J: kinetic and strain energy of the modes about the preload, and the contact's

@@ -6,7 +6,15 @@ use std::path::PathBuf;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ExcitationKind, RealOutput};
+use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput};
+
+/// Every contact law.
+pub const LAWS: [ContactLawKind; 4] = [
+    ContactLawKind::Hertz,
+    ContactLawKind::Rough,
+    ContactLawKind::Linearised,
+    ContactLawKind::Bonded,
+];
 
 /// The files of `scenes/`, for tests run in the top folder.
 pub fn files() -> Vec<PathBuf> {
@@ -59,10 +67,25 @@ pub fn propped_mass(scene: &Scene) -> f64 {
     0.375 * beam.density * beam.width * beam.thickness * beam.length + scene.tip.mass
 }
 
+/// Inputs of a base acceleration (m/s2) and its rate (m/s3) alone.
+pub fn accelerated(base_acceleration: f64, base_acceleration_rate: f64) -> Inputs {
+    Inputs {
+        base_acceleration,
+        base_acceleration_rate,
+        ..Inputs::default()
+    }
+}
+
+/// Inputs of a displacement of the fixed contact (m) and its rate (m/s) alone.
+pub fn supported(support_displacement: f64, support_displacement_rate: f64) -> Inputs {
+    Inputs {
+        support_displacement,
+        support_displacement_rate,
+        ..Inputs::default()
+    }
+}
+
 /// Outputs after each of `count` communication steps of `size` seconds without inputs, and the simulation.
-///
-/// # Panics
-/// If it cannot be simulated.
 pub fn course<const N: usize>(
     scene: &Scene,
     size: f64,
@@ -96,9 +119,6 @@ pub const NEAR: f64 = 1e-7;
 pub type Three<const N: usize> = [[(f64, f64); N]; 3];
 
 /// Such points of a scene with these inputs over 2 ms, `size` (s) from three to three.
-///
-/// # Panics
-/// If it cannot be simulated, or an output is not continuous.
 pub fn threes<const N: usize>(scene: &Scene, inputs: &Inputs, outputs: [RealOutput; N], size: f64) -> Vec<Three<N>> {
     let mut simulation = Simulation::new(scene, inputs, 0.0).expect("a scene that can be simulated");
     let mut rows = Vec::new();
@@ -118,9 +138,6 @@ pub fn range<const N: usize>(rows: &[Three<N>], output: usize) -> f64 {
 }
 
 /// Checks that the rate of an output lies between the slopes just before and just after it, which are wrong by `noise` at most.
-///
-/// # Panics
-/// If it does not.
 pub fn check_slope<const N: usize>([before, now, after]: &Three<N>, output: usize, noise: f64, case: &str) {
     let slope = |from: &[(f64, f64); N], to: &[(f64, f64); N]| (to[output].0 - from[output].0) / NEAR;
     let (slopes, rate) = ([slope(before, now), slope(now, after)], now[output].1);

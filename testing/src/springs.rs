@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fastrand::Rng;
 use relay_contact::reference::Spring;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, PointMass, Segment, Segments, Shape, SpringFile};
+use relay_contact::scene::spring::{GivenMode, Modes, PointMass, Segment, Segments, Shape, SpringFile};
 
 use crate::relays::{Relay, logarithmic, uniform};
 use crate::scenes::tip_stiffness;
@@ -16,6 +16,23 @@ use crate::scenes::tip_stiffness;
 pub fn spring_file(name: &str, shape: Shape) -> Option<Arc<SpringFile>> {
     let name = name.to_owned();
     Some(Arc::new(SpringFile { name, shape }))
+}
+
+/// A spring of these segments.
+pub fn of_segments(segments: impl IntoIterator<Item = Segment>) -> Shape {
+    Shape::Segments(Segments {
+        segments: segments.into_iter().collect(),
+        ..Segments::default()
+    })
+}
+
+/// A spring of these modes, which has this compliance, m/N.
+pub fn of_modes(compliance: f64, modes: impl IntoIterator<Item = GivenMode>) -> Shape {
+    Shape::Modes(Modes {
+        compliance,
+        parallel_compliance: None,
+        modes: modes.into_iter().collect(),
+    })
 }
 
 /// A segment of this length, with width and thickness at its start and end (m), of the scene's material.

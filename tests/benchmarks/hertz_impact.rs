@@ -32,13 +32,9 @@ fn greatest_force_and_duration() {
             rig.run_to(&rest, touch + 2.0 * duration).unwrap();
             let shift = 0.5 * allowed * duration * duration / (mass * speed);
             let rounding = 1e-10 * duration + 1e-14 * touch;
-            digits(rig.state.contact().last_closing.unwrap(), touch, 0.0, rounding);
-            digits(
-                rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
-                duration,
-                0.0,
-                shift + rounding,
-            );
+            let (closing, opening) = rig.touch();
+            digits(closing, touch, 0.0, rounding);
+            digits(opening - closing, duration, 0.0, shift + rounding);
             digits(rig.state.contact().rate, -speed, 0.0, allowed * duration / mass);
         }
     }

@@ -11,7 +11,9 @@ use relay_contact::reference::{Law, Model, Space};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use testing::near;
 use testing::rig::Rig;
+use testing::scenes::accelerated;
 
 const FREQUENCY: f64 = 1000.0;
 const AMPLITUDE: f64 = 98.0;
@@ -105,10 +107,7 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                 let mut single = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
                 let mut restored = inside.clone();
                 for k in 0..600 {
-                    let pulsed = Inputs {
-                        base_acceleration: if k / 100 % 2 == 1 { 20.0 } else { 0.0 },
-                        ..Inputs::default()
-                    };
+                    let pulsed = accelerated(if k / 100 % 2 == 1 { 20.0 } else { 0.0 }, 0.0);
                     let time = f64::from(k) * size;
                     for simulation in [&mut inside, &mut single, &mut restored] {
                         simulation.step(&pulsed, time, size).unwrap();
@@ -117,10 +116,11 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                         .map(|output| (inside.real(output), single.real(output), restored.real(output)));
                     for ((found, exact, restored), allowed) in read.into_iter().zip([allowed, allowed / stiffness]) {
                         assert_eq!(found, restored);
-                        assert!(
-                            (found - exact).abs() <= allowed,
-                            "{law:?}, {tolerance:e}, {size} s, step {k}: {found} {exact}, {:.1e} of what is allowed",
-                            (found - exact).abs() / allowed
+                        near(
+                            format_args!("{law:?}, {tolerance:e}, {size} s, step {k}"),
+                            found,
+                            exact,
+                            allowed,
                         );
                     }
                     if k % 37 == 0 {
@@ -306,10 +306,7 @@ fn one_long_step_is_many_short_ones() {
             let mut many = Rig::new(Model::new(&scene, 0.0).unwrap());
             let mut worst = 0.0_f64;
             for count in 0..5 {
-                let inputs = Inputs {
-                    base_acceleration: 20.0 * f64::from(count),
-                    ..Inputs::default()
-                };
+                let inputs = accelerated(20.0 * f64::from(count), 0.0);
                 one.run_to(&inputs, f64::from(count + 1) * size).unwrap();
                 for part in 1..=parts {
                     many.run_to(&inputs, (f64::from(count) + f64::from(part) / f64::from(parts)) * size)

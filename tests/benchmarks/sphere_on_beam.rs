@@ -46,10 +46,6 @@ fn greatest_force_its_instant_and_the_duration() {
     digits(greatest, 4.9777, 1e-4, 1e-9 * 5.0);
     // Sampled every 50 ns.
     digits(instant, 72.55e-6, 1e-8, 2.5e-8);
-    digits(
-        rig.state.contact().last_opening.unwrap() - rig.state.contact().last_closing.unwrap(),
-        156.39e-6,
-        1e-8,
-        0.0,
-    );
+    let (closing, opening) = rig.touch();
+    digits(opening - closing, 156.39e-6, 1e-8, 0.0);
 }

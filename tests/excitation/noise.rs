@@ -1,6 +1,7 @@
 //! The random acceleration: its power, its spectrum, its seed.
 
 use std::f64::consts::{PI, TAU};
+use testing::close;
 
 use super::{equal_steps, forces, generator, random, undriven};
 
@@ -52,9 +53,11 @@ fn random_acceleration_has_a_flat_spectrum_and_nothing_outside_its_band() {
     for (power, frequency) in spectrum.into_iter().zip(frequencies) {
         if (low..high).contains(&frequency) {
             // A periodogram scatters as much as it is; four times that over the root of how many there are.
-            assert!(
-                (power / density - 1.0).abs() < 4.0 / f64::from(seeds).sqrt(),
-                "{frequency} Hz: {power}"
+            close(
+                format_args!("{frequency} Hz"),
+                power,
+                density,
+                4.0 / f64::from(seeds).sqrt(),
             );
             inside.push(power / density);
         } else {

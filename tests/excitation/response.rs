@@ -3,7 +3,7 @@
 use relay_contact::inputs::Inputs;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
-use testing::scenes::force_scale;
+use testing::scenes::{LAWS, accelerated, force_scale};
 
 use super::{
     G, closed_form, equal_steps, every_waveform, forces, generator, half_sine, limited, random, sweep, undriven,
@@ -21,10 +21,11 @@ fn waveforms_from_outside_converge_to_the_generators() {
         // Where it jumps, what follows counts from there on.
         let before = |time: f64| generator(&scene).acceleration_before(time);
         let errors = [2_u32, 1].map(|size| {
-            let course = |time: f64, end: f64| Inputs {
-                base_acceleration: closed_form(&scene, time + 1e-12),
-                base_acceleration_rate: (before(end) - closed_form(&scene, time + 1e-12)) / (end - time),
-                ..Inputs::default()
+            let course = |time: f64, end: f64| {
+                accelerated(
+                    closed_form(&scene, time + 1e-12),
+                    (before(end) - closed_form(&scene, time + 1e-12)) / (end - time),
+                )
             };
             let (all, _) = forces(&quiet, &equal_steps(1e-6 * f64::from(size), 3000 / size), course);
             let some = all.iter().skip(100 / size as usize - 1).step_by(100 / size as usize);
@@ -40,12 +41,7 @@ fn waveforms_from_outside_converge_to_the_generators() {
 fn the_communication_step_does_not_matter() {
     for (name, base) in every_waveform() {
         for strength in [1.0, 4.0] {
-            for law in [
-                ContactLawKind::Hertz,
-                ContactLawKind::Rough,
-                ContactLawKind::Linearised,
-                ContactLawKind::Bonded,
-            ] {
+            for law in LAWS {
                 let mut scene = base.clone();
                 scene.effects.contact_law = law;
                 scene.excitation.amplitude *= strength;

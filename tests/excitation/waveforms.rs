@@ -1,6 +1,7 @@
 //! The accelerations themselves, against their closed forms and the standards.
 
 use std::f64::consts::TAU;
+use testing::near;
 
 use relay_contact::variables::ExcitationKind;
 
@@ -15,10 +16,7 @@ fn waveforms_are_those_of_their_closed_forms() {
             let time = 1e-6 * (f64::from(k) + 0.5);
             let (found, expected) = (generator.acceleration(time), closed_form(&scene, time));
             largest = largest.max(found.abs());
-            assert!(
-                (found - expected).abs() < 1e-11 * 300.0,
-                "{name} at {time}: {found} {expected}"
-            );
+            near(format_args!("{name} at {time}"), found, expected, 1e-11 * 300.0);
             assert_eq!(generator.is_active(time), found != 0.0, "{name} at {time}");
         }
         assert!(largest > 30.0, "{name}: {largest}");

@@ -4,6 +4,7 @@ use std::ffi::CString;
 
 use relay_contact::fmi2::*;
 use testing::instance::{Arguments, Instance};
+use testing::near;
 
 const STEP: f64 = 1e-5;
 
@@ -62,10 +63,7 @@ fn how_an_importer_reckons_time_makes_no_difference() {
             _ => 0.0,
         };
         for (force, expected) in forces(clock, true, 500, None, 400.0).iter().zip(&expected) {
-            assert!(
-                (force - expected).abs() <= allowed,
-                "{name}: {force} N and {expected} N"
-            );
+            near(name, *force, *expected, allowed);
         }
     }
 }

@@ -7,11 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape};
+use relay_contact::scene::spring::GivenMode;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::scenes::{at_rest, course, shaken, undamped};
-use testing::springs::{mode, spring_file};
+use testing::springs::{mode, of_modes, spring_file};
+use testing::{close, near};
 
 use super::{rubbing, stiffness_ratio};
 use crate::spring::reference::{Stretch, frequencies};
@@ -29,7 +30,7 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
     let lever = 1.0 / MASS.sqrt();
     let compliance = 1e-3;
     let pressing = 300.0;
-    let modes = vec![
+    let modes = [
         GivenMode {
             damping: Some(1.0),
             rotation: Some(0.0),
@@ -41,12 +42,7 @@ fn slider(amplitude: f64, frequency: f64, own: f64, ratio: f64) -> Scene {
             ..mode(own, 0.0, LOADED * lever)
         },
     ];
-    let shape = Shape::Modes(Modes {
-        compliance,
-        parallel_compliance: None,
-        modes,
-    });
-    scene.spring = spring_file("slider", shape);
+    scene.spring = spring_file("slider", of_modes(compliance, modes));
     scene
 }
 
@@ -89,10 +85,7 @@ fn hysteresis_of_a_slider_moved_to_and_fro() {
         );
         assert!(reached > 1.2 * limit / stiffness);
         // The extremes are read at a thousand instants a cycle: wrong by 5e-6 of A.
-        assert!(
-            (dissipated / expected - 1.0).abs() < 1e-4,
-            "{dissipated:e} {expected:e}"
-        );
+        close("dissipated", dissipated, expected, 1e-4);
     }
 }
 
@@ -122,10 +115,7 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
         let expected = limit / friction / spring * (v * v - (friction * u).powi(2)).sqrt();
         println!("{ratio}, {friction}: {found:e} m, expected {expected:e} m");
         // Two thousand instants a cycle miss the extreme by 3e-6 of it.
-        assert!(
-            (found / expected - 1.0).abs() < 3e-4,
-            "{ratio} {friction}: {found} {expected}"
-        );
+        close(format_args!("{ratio} {friction}"), found, expected, 3e-4);
     }
 }
 
@@ -215,9 +205,11 @@ fn what_sticks_is_a_rotational_spring() {
             let expected = swing * (0.5 * PI * f64::from(quarter + 1)).cos();
             let found = simulation.real(RealOutput::ContactForce) - force;
             // The law bends by the swing over the preload, 1e-4, in the second harmonic.
-            assert!(
-                (found - expected).abs() < 1e-3 * swing,
-                "{height} m, quarter {quarter}: {found:e} {expected:e}"
+            near(
+                format_args!("{height} m, quarter {quarter}"),
+                found,
+                expected,
+                1e-3 * swing,
             );
         }
         assert_eq!(simulation.real(RealOutput::FrictionEnergy), 0.0);

@@ -8,7 +8,7 @@ use relay_contact::scene::{Contact, Scene};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{FrictionKind, IntegerOutput, RealOutput};
 use testing::scenes::{
-    NEAR, Three, check_slope, course, force_scale, forces, largest_difference, range, shaken, threes,
+    NEAR, Three, check_slope, course, force_scale, forces, largest_difference, range, shaken, supported, threes,
 };
 
 /// The scene with friction.
@@ -188,14 +188,14 @@ fn friction_never_exceeds_its_limit_in_hard_cases() {
                     for k in 0..100 {
                         let time = 3e-5 * f64::from(k);
                         // The support lifts and comes back.
-                        let inputs = Inputs {
-                            support_displacement: if k > 50 {
+                        let inputs = supported(
+                            if k > 50 {
                                 -1e-5 * (0.1 * f64::from(k)).sin()
                             } else {
                                 0.0
                             },
-                            ..Inputs::default()
-                        };
+                            0.0,
+                        );
                         simulation
                             .step(&inputs, time, 3e-5)
                             .unwrap_or_else(|error| panic!("{case}: {error}"));

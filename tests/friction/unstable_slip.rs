@@ -7,11 +7,11 @@ use relay_contact::error::Remark;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape};
+use relay_contact::scene::spring::GivenMode;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, RealOutput};
 use testing::scenes::undamped;
-use testing::springs::{mode, spring_file};
+use testing::springs::{mode, of_modes, spring_file};
 
 use super::rubbing;
 
@@ -43,19 +43,13 @@ fn squealing(loads: [f64; 2]) -> Scene {
         rotation: Some(1.0 / scene.tip.contact_height),
         ..mode(0.1, 0.0, 0.0)
     };
-    let modes: Vec<_> = flexible.chain([slide]).collect();
     let compliance = MODES
         .iter()
         .map(|(frequency, contact)| (contact / (TAU * frequency)).powi(2))
         .sum();
     // Some FORCE on contact and spring; each mode gives way to its load.
     scene.contact.overtravel = FORCE / ((1.0 - EXPONENT) * STIFFNESS);
-    let shape = Shape::Modes(Modes {
-        compliance,
-        parallel_compliance: None,
-        modes,
-    });
-    scene.spring = spring_file("two modes", shape);
+    scene.spring = spring_file("two modes", of_modes(compliance, flexible.chain([slide])));
     scene
 }
 

@@ -10,7 +10,7 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
-use testing::scenes::{NEAR, check_slope, range, threes};
+use testing::scenes::{NEAR, accelerated, check_slope, range, threes};
 
 /// A relay whose moving contact lies open in the middle between both fixed ones.
 pub fn changeover(gap: f64) -> Scene {
@@ -79,14 +79,15 @@ fn a_mirrored_relay_has_the_same_bits() {
         for size in [1e-3, 2e-5, 3e-6] {
             let mut image = scene.clone();
             image.excitation.amplitude = -scene.excitation.amplitude;
-            let at = |sign: f64, time: f64| Inputs {
-                base_acceleration: sign
-                    * if kind == ExcitationKind::None {
+            let at = |sign: f64, time: f64| {
+                accelerated(
+                    sign * if kind == ExcitationKind::None {
                         250.0
                     } else {
                         30.0 * (2e3 * time).sin()
                     },
-                ..Inputs::default()
+                    0.0,
+                )
             };
             let mut own = Simulation::new(&scene, &at(1.0, 0.0), 0.0).unwrap();
             let mut other = Simulation::new(&image, &at(-1.0, 0.0), 0.0).unwrap();

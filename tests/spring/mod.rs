@@ -12,8 +12,9 @@ use relay_contact::reference::{Model, Section, Spring, frequencies as uniform_fr
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape};
 use relay_contact::variables::AxialForceKind;
+use testing::close;
 use testing::scenes::{forces, largest_difference, shaken};
-use testing::springs::{segment, spring_file};
+use testing::springs::{of_segments, segment, spring_file};
 
 fn with(mut scene: Scene, shape: Shape) -> Scene {
     scene.spring = spring_file("spring.toml", shape);
@@ -32,11 +33,7 @@ fn uniform(length: f64, width: f64, thickness: f64) -> Segment {
 fn cut(scene: &Scene, shares: &[f64]) -> Scene {
     let beam = &scene.beam;
     let part = |share: &f64| uniform(share * beam.length, beam.width, beam.thickness);
-    let segments = Segments {
-        segments: shares.iter().map(part).collect(),
-        ..Segments::default()
-    };
-    made_of(scene.clone(), segments)
+    with(scene.clone(), of_segments(shares.iter().map(part)))
 }
 
 /// Bending stiffness and mass per length of a rectangle of the scene's materials.
@@ -94,10 +91,7 @@ fn segments_of_the_uniform_section_are_the_uniform_spring() {
                 (model.frequency(), plain.frequency()),
                 (model.force_scale(), plain.force_scale()),
             ] {
-                assert!(
-                    (found / expected - 1.0).abs() < 1e-10,
-                    "{axial:?} {shares:?}: {found} {expected}"
-                );
+                close(format_args!("{axial:?} {shares:?}"), found, expected, 1e-10);
             }
             let difference = largest_difference(&forces(&scene, 2e-5, 200), &expected);
             println!("{axial:?} {shares:?}: {:e}", difference / largest);
@@ -111,35 +105,13 @@ fn a_wedge_has_the_frequencies_of_its_bessel_functions() {
     // omega L^2 sqrt(rho A / E I) at the clamp of a beam of constant width whose thickness falls linearly to this share:
     // zeros of the determinant of J, Y, I and K of order 2 and 3 at 2 sqrt(lambda z), computed with 30 digits; the first
     // three at 0.5 are those of H. H. Mabie, C. B. Rogers, J. Acoust. Soc. Am. 36 (1964) 463.
-    for (share, expected) in [
-        (
-            0.5,
-            [
-                3.823_784_847_290_28,
-                18.317_260_904_174_7,
-                47.264_827_010_480_6,
-                90.450_477_658_643_7,
-            ],
-        ),
-        (
-            0.1,
-            [
-                4.630_723_862_396_02,
-                14.930_792_667_860_2,
-                32.833_121_135_886_3,
-                58.917_067_490_655_4,
-            ],
-        ),
-        (
-            0.02,
-            [
-                5.123_986_890_986_4,
-                14.824_498_584_841_9,
-                29.802_548_057_934_8,
-                50.471_115_658_264,
-            ],
-        ),
-    ] {
+    #[rustfmt::skip]
+    let cases = [
+        (0.5, [3.823_784_847_290_28, 18.317_260_904_174_7, 47.264_827_010_480_6, 90.450_477_658_643_7]),
+        (0.1, [4.630_723_862_396_02, 14.930_792_667_860_2, 32.833_121_135_886_3, 58.917_067_490_655_4]),
+        (0.02, [5.123_986_890_986_4, 14.824_498_584_841_9, 29.802_548_057_934_8, 50.471_115_658_264]),
+    ];
+    for (share, expected) in cases {
         let scene = no_rivet();
         let (length, width, thickness) = (0.02, 4e-3, 4e-4);
         let (stiffness, mass) = section(&scene, width, thickness);
@@ -151,11 +123,10 @@ fn a_wedge_has_the_frequencies_of_its_bessel_functions() {
             segment(0.5 * length, [width; 2], [half, share * thickness]),
         ];
         for segments in [vec![whole], halves.to_vec()] {
-            let segments = Segments {
-                segments,
-                ..Segments::default()
-            };
-            agree(&made_of(scene.clone(), segments), &expected.map(|value| value * unit));
+            agree(
+                &with(scene.clone(), of_segments(segments)),
+                &expected.map(|value| value * unit),
+            );
         }
     }
 }
@@ -258,11 +229,7 @@ fn a_column_on_a_soft_clamp_buckles_at_its_root() {
         let rest = |l: f64| l * (l * length).tan() - clamp / stiffness;
         let l = relay_contact::reference::bracketed(rest, 0.0, 0.999_999_999 * TAU / 4.0 / length).unwrap();
         let expected = stiffness * l * l;
-        assert!(
-            (spring.buckling_load / expected - 1.0).abs() < 1e-10,
-            "{} {expected}",
-            spring.buckling_load
-        );
+        close("buckling load, N", spring.buckling_load, expected, 1e-10);
     }
 }
 

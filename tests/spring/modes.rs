@@ -5,8 +5,9 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Shape};
 use relay_contact::variables::ContactLawKind;
+use testing::close;
 use testing::scenes::{forces, largest_difference, shaken};
-use testing::springs::mode;
+use testing::springs::{mode, of_modes};
 
 use super::{TAU, with};
 
@@ -80,27 +81,19 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     let (mass, frequency, contact) = (1e-4_f64, 1000.0, 0.9);
     let omega_squared = (TAU * frequency).powi(2);
     let held = contact * contact / mass / omega_squared;
-    let modes = Modes {
-        compliance: 1.1 * held,
-        parallel_compliance: None,
-        modes: vec![GivenMode {
-            damping: Some(0.01),
-            ..mode(frequency, contact / mass.sqrt(), mass.sqrt())
-        }],
+    let given = GivenMode {
+        damping: Some(0.01),
+        ..mode(frequency, contact / mass.sqrt(), mass.sqrt())
     };
     let mut scene = shaken(20.0, 300.0);
     scene.effects.contact_law = ContactLawKind::Bonded;
     scene.contact.damping = 0.0;
-    let scene = with(scene, Shape::Modes(modes));
+    let scene = with(scene, of_modes(1.1 * held, [given]));
     let model = Model::new(&scene, 0.0).unwrap();
     let series = 1.0 / (1.0 / model.preload().contact_stiffness + 0.1 * held);
     let expected = (omega_squared + series * contact * contact / mass).sqrt() / TAU;
     // The residual mode is 1e4 times faster than the other: the square of that.
-    assert!(
-        (model.frequency() / expected - 1.0).abs() < 1e-7,
-        "{} {expected}",
-        model.frequency()
-    );
+    close("frequency, Hz", model.frequency(), expected, 1e-7);
     // Steady state by the same series: q = -g a / (omega_0^2 - omega^2 + k_s T^2 + i omega c), F = -k_s T q.
     let omega = TAU * 300.0;
     let (real, imaginary) = (

@@ -24,18 +24,12 @@ fn workspace(folder: &Path) -> Option<PathBuf> {
 }
 
 /// Reads a file of the project.
-///
-/// # Errors
-/// Where it cannot be read.
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     let path = root().join(path);
     fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
 }
 
 /// Writes a file of the project, and its folder if there is none yet; gives its whole path.
-///
-/// # Errors
-/// Where it cannot be written.
 pub fn write(path: impl AsRef<Path>, contents: &[u8]) -> Result<PathBuf> {
     let path = root().join(path);
     fs::create_dir_all(path.parent().context("a file without a folder")?)?;
@@ -65,9 +59,6 @@ pub fn python() -> Command {
 }
 
 /// Runs a program and shows its output; the error names the whole command.
-///
-/// # Errors
-/// Where it does not start, or fails.
 pub fn run(command: &mut Command) -> Result<()> {
     let status = command
         .status()
@@ -79,9 +70,6 @@ pub fn run(command: &mut Command) -> Result<()> {
 }
 
 /// Runs a program and gives what it printed; the error has all of its output.
-///
-/// # Errors
-/// Where it does not start, fails, or prints what is not UTF-8.
 pub fn output(command: &mut Command) -> Result<String> {
     let output = command
         .output()
@@ -95,9 +83,6 @@ pub fn output(command: &mut Command) -> Result<String> {
 }
 
 /// The folder of a Rust compiler, which has its libraries and documentation.
-///
-/// # Errors
-/// Where the compiler does not start.
 pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
     let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;
     Ok(PathBuf::from(sysroot.trim()))

@@ -42,7 +42,7 @@ fn main() -> Result<()> {
         silent.for_each(|compared| println!("{compared:?}"));
         return Ok(());
     }
-    let judged = judge_all(arguments.first, arguments.count, draw);
+    let judged = judge_all(arguments.first, arguments.count, draw, 0.0);
     if arguments.kind.is_some() {
         let above = judged.iter().filter(|judged| judged.error > judged.tolerance);
         above.for_each(|judged| println!("{judged:?}"));

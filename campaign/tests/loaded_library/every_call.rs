@@ -32,11 +32,7 @@ fn in_phase(phase: Phase) -> Judge<'static> {
 /// Every function with valid arguments, and with each fault.
 fn calls() -> Vec<Call> {
     let mut calls = vec![
-        Call::SetupExperiment {
-            tolerance: Some(1e-6),
-            start: 0.0,
-            stop: Some(1.0),
-        },
+        Call::SetupExperiment(Some(1e-6), 0.0, Some(1.0)),
         Call::EnterInitializationMode,
         Call::ExitInitializationMode,
         Call::Terminate,
@@ -62,77 +58,49 @@ fn calls() -> Vec<Call> {
                 .map(|variable| (variable.reference, variable.start))
                 .collect();
             for count in [0, 1] {
-                calls.push(Call::Get {
+                calls.push(Call::Get(
                     kind,
-                    references: references[..count.min(references.len())].to_vec(),
+                    references[..count.min(references.len())].to_vec(),
                     fault,
-                });
-                calls.push(Call::Set {
-                    kind,
-                    values: values[..count.min(values.len())].to_vec(),
-                    fault,
-                });
+                ));
+                calls.push(Call::Set(kind, values[..count.min(values.len())].to_vec(), fault));
             }
         }
         for slot in [0, 1] {
-            calls.push(Call::GetState { slot, fault });
-            calls.push(Call::SetState { slot, fault });
-            calls.push(Call::FreeState { slot, fault });
-            calls.push(Call::StateSize { slot, fault });
-            calls.push(Call::Serialize { slot, fault });
+            calls.push(Call::GetState(slot, fault));
+            calls.push(Call::SetState(slot, fault));
+            calls.push(Call::FreeState(slot, fault));
+            calls.push(Call::StateSize(slot, fault));
+            calls.push(Call::Serialize(slot, fault));
             for damage in [Damage::None, Damage::Flip(500), Damage::Cut(60), Damage::Longer(0)] {
-                calls.push(Call::Deserialize { slot, damage, fault });
+                calls.push(Call::Deserialize(slot, damage, fault));
             }
         }
         for function in StatusFunction::ALL {
             for kind in [0, 1, 2, 3, 4, u32::MAX] {
-                calls.push(Call::Status { function, kind, fault });
+                calls.push(Call::Status(function, kind, fault));
             }
         }
         for known in ["logStatusError", "logEverything"] {
             let categories = vec![Some(known.to_owned())];
-            calls.push(Call::SetDebugLogging {
-                on: true,
-                categories,
-                fault,
-            });
+            calls.push(Call::SetDebugLogging(true, categories, fault));
         }
-        calls.push(Call::SetDebugLogging {
-            on: true,
-            categories: vec![None],
-            fault,
-        });
-        calls.push(Call::SetDebugLogging {
-            on: false,
-            categories: vec![],
-            fault,
-        });
+        calls.push(Call::SetDebugLogging(true, vec![None], fault));
+        calls.push(Call::SetDebugLogging(false, vec![], fault));
         for count in [0, 1] {
-            calls.push(Call::SetInputDerivatives {
-                values: vec![(input, 1, 3.0); count],
-                fault,
-            });
-            calls.push(Call::GetOutputDerivatives {
-                values: vec![(force, 1); count],
-                fault,
-            });
+            calls.push(Call::SetInputDerivatives(vec![(input, 1, 3.0); count], fault));
+            calls.push(Call::GetOutputDerivatives(vec![(force, 1); count], fault));
         }
     }
     calls
 }
 
 fn set_derivative(reference: u32, order: i32, value: f64) -> Call {
-    Call::SetInputDerivatives {
-        values: vec![(reference, order, value)],
-        fault: Fault::None,
-    }
+    Call::SetInputDerivatives(vec![(reference, order, value)], Fault::None)
 }
 
 fn get_derivative(reference: u32, order: i32) -> Call {
-    Call::GetOutputDerivatives {
-        values: vec![(reference, order)],
-        fault: Fault::None,
-    }
+    Call::GetOutputDerivatives(vec![(reference, order)], Fault::None)
 }
 
 /// Wrong values, references and communication points.
@@ -188,19 +156,11 @@ fn wrong_numbers() -> Vec<Call> {
         Point::At(f64::INFINITY),
         Point::At(f64::NEG_INFINITY),
     ] {
-        calls.push(Call::DoStep { point, size: 1e-5 });
+        calls.push(Call::DoStep(point, 1e-5));
     }
     for number in strange {
-        calls.push(Call::SetupExperiment {
-            tolerance: None,
-            start: number,
-            stop: None,
-        });
-        calls.push(Call::SetupExperiment {
-            tolerance: Some(number),
-            start: 0.0,
-            stop: Some(number),
-        });
+        calls.push(Call::SetupExperiment(None, number, None));
+        calls.push(Call::SetupExperiment(Some(number), 0.0, Some(number)));
     }
     calls
 }
@@ -270,11 +230,7 @@ fn what_is_no_instance_is_refused_by_every_function_and_left_alone() {
 
 #[test]
 fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_errors() {
-    let setup = Call::SetupExperiment {
-        tolerance: None,
-        start: 1.0,
-        stop: Some(1.0 + 2e-5),
-    };
+    let setup = Call::SetupExperiment(None, 1.0, Some(1.0 + 2e-5));
     let [enter, exit] = Call::INITIALISE;
     let start = [setup, enter, exit, Call::step(1e-5)];
     let cases: [&[Call]; 4] = [
@@ -285,14 +241,7 @@ fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_err
         ],
         &[Call::step(1e-5), Call::step(1e-9), Call::set_reals(vec![(0, 1.0)])],
         &[Call::Terminate, Call::Terminate, Call::step(1e-5)],
-        &[
-            Call::DoStep {
-                point: Point::Off(-1.0),
-                size: 1e-5,
-            },
-            Call::step(1e-5),
-            Call::Terminate,
-        ],
+        &[Call::DoStep(Point::Off(-1.0), 1e-5), Call::step(1e-5), Call::Terminate],
     ];
     for case in cases {
         let mut judge = Judge::new(&LIBRARY);

@@ -13,6 +13,14 @@ pub struct Platform {
 }
 
 impl Platform {
+    const fn new(folder: &'static str, extension: &'static str, targets: &'static [&'static str]) -> Self {
+        Self {
+            folder,
+            extension,
+            targets,
+        }
+    }
+
     /// Whether wheels of a system and processor carry its library.
     pub fn is_of(&self, wheel: &Wheel) -> bool {
         wheel.folders.contains(&self.folder)
@@ -28,65 +36,36 @@ pub struct Wheel {
 }
 
 impl Wheel {
+    const fn new(tag: (&'static str, &'static str, &'static str), folders: &'static [&'static str]) -> Self {
+        Self { tag, folders }
+    }
+
     /// Its platform tag, as pip and the index of Python packages know it: the libraries are checked for just this oldest
     /// system.
     pub fn tag(&self) -> String {
         let (system, oldest, processor) = self.tag;
-        [system, &oldest.replace('.', "_"), processor]
-            .into_iter()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join("_")
+        let oldest = oldest.replace('.', "_");
+        let mut parts = vec![system, &oldest, processor];
+        parts.retain(|part| !part.is_empty());
+        parts.join("_")
     }
 }
 
 /// All of them.
 pub const WHEELS: [Wheel; 4] = [
-    Wheel {
-        tag: ("manylinux", GLIBC, "x86_64"),
-        folders: &["linux64"],
-    },
-    Wheel {
-        tag: ("manylinux", GLIBC, "aarch64"),
-        folders: &["aarch64-linux"],
-    },
-    Wheel {
-        tag: ("win", "", "amd64"),
-        folders: &["win64"],
-    },
-    Wheel {
-        tag: ("macosx", MACOS, "universal2"),
-        folders: &["darwin64", "aarch64-darwin"],
-    },
+    Wheel::new(("manylinux", GLIBC, "x86_64"), &["linux64"]),
+    Wheel::new(("manylinux", GLIBC, "aarch64"), &["aarch64-linux"]),
+    Wheel::new(("win", "", "amd64"), &["win64"]),
+    Wheel::new(("macosx", MACOS, "universal2"), &["darwin64", "aarch64-darwin"]),
 ];
 
 /// All platforms.
 pub const PLATFORMS: [Platform; 5] = [
-    Platform {
-        folder: "linux64",
-        extension: "so",
-        targets: &["x86_64-unknown-linux-gnu"],
-    },
-    Platform {
-        folder: "aarch64-linux",
-        extension: "so",
-        targets: &["aarch64-unknown-linux-gnu"],
-    },
-    Platform {
-        folder: "win64",
-        extension: "dll",
-        targets: &["x86_64-pc-windows-gnullvm"],
-    },
-    Platform {
-        folder: "darwin64",
-        extension: "dylib",
-        targets: &["x86_64-apple-darwin", "aarch64-apple-darwin"],
-    },
-    Platform {
-        folder: "aarch64-darwin",
-        extension: "dylib",
-        targets: &["aarch64-apple-darwin"],
-    },
+    Platform::new("linux64", "so", &["x86_64-unknown-linux-gnu"]),
+    Platform::new("aarch64-linux", "so", &["aarch64-unknown-linux-gnu"]),
+    Platform::new("win64", "dll", &["x86_64-pc-windows-gnullvm"]),
+    Platform::new("darwin64", "dylib", &["x86_64-apple-darwin", "aarch64-apple-darwin"]),
+    Platform::new("aarch64-darwin", "dylib", &["aarch64-apple-darwin"]),
 ];
 
 #[cfg(test)]

@@ -30,9 +30,7 @@ const WINE: [&str; 3] = ["wine", "wine64", "/usr/lib/wine/wine64"];
 
 /// Runs the library of a platform and returns the result as text: the output of both programs, or why they could not be run.
 /// `zig` compiles programs for other machines than this one.
-///
-/// # Errors
-/// A program that does not compile, does not run or fails; a force that differs by more than the tolerance.
+/// Errors are a program that does not compile, run or succeed, and a force that differs by more than the tolerance.
 pub fn run(platform: &Platform, library: &Path, zig: &Path) -> Result<String> {
     let runner = match Runner::of(platform, zig) {
         Ok(runner) => runner,
