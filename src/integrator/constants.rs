@@ -145,8 +145,8 @@ pub const BRIEF: f64 = 0.3;
 /// fastest velocity there, 1. What swings unseen between so many nodes is no larger. Pinned: negative, `tests/second`.
 pub const DISTANT: f64 = 8.0;
 
-/// Changes between stick and slip that take no time, before the contact goes on as it is for one step. Only rounding makes
-/// them. Pinned: 0, `amplitude_of_a_coulomb_damped_oscillator`.
+/// Changes between stick and slip that take no time, before the contact goes on as it is for one step of the shortest length. Only
+/// rounding makes them. Cost.
 pub const MOST_CHANGES: u32 = 16;
 
 /// Pieces of a step, or of a part of it, in each of which at most two extremes of its force polynomial are looked for. The degree of long steps.

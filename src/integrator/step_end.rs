@@ -197,10 +197,15 @@ impl Stepper<'_> {
             self.progress.changes += 1;
             // Polynomials of a shorter step say which of the two it is; rounding must not let it change to and fro for ever.
             let again = self.progress.changes > 1;
+            // The next one goes on as it is: for no longer than rounding tells the two apart.
+            let last = self.progress.changes > MOST_CHANGES;
+            let most = match (last, again) {
+                (true, _) => self.shortest(),
+                (false, true) => MOST_SHRINK * requested,
+                (false, false) => requested,
+            };
             let lengths = &mut self.state.lengths;
-            let length = lengths
-                .long
-                .min(if again { MOST_SHRINK * requested } else { requested });
+            let length = lengths.long.min(most);
             if again {
                 lengths.short = lengths.short.min(length);
             }
