@@ -111,12 +111,9 @@ impl LogSweep {
     /// The next instant after `time` (s) at which it starts, crosses over or ends.
     #[inline(never)]
     pub fn next_break(&self, time: f64) -> Option<f64> {
-        let next = self.window.next_end(time);
         let crossover = self.crossover.filter(|crossover| *crossover > time);
-        match (next, crossover) {
-            (Some(end), Some(crossover)) => Some(end.min(crossover)),
-            _ => next,
-        }
+        let end = self.window.next_end(time)?;
+        Some(crossover.map_or(end, |crossover| end.min(crossover)))
     }
 
     /// The shorter of a quarter of the period at `time` (s) and the time in which the frequency changes by a factor of

@@ -173,13 +173,8 @@ mod tests {
     #[test]
     #[allow(clippy::panic)]
     fn a_panic_becomes_an_error_that_a_reset_heals() {
-        let silent = fmi2CallbackFunctions {
-            logger: None,
-            allocateMemory: None,
-            freeMemory: None,
-            stepFinished: None,
-            componentEnvironment: ptr::null_mut(),
-        };
+        // SAFETY: callbacks that are none, and a null pointer.
+        let silent: fmi2CallbackFunctions = unsafe { std::mem::zeroed() };
         let component = hand_out(
             Instance::new(
                 Logger::new(&silent, c"relay", false),
