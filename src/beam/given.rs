@@ -155,11 +155,9 @@ impl Given {
     /// is still stiffer than the spring.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
         let stiffer = |s: f64| {
-            let compliance: f64 = self
-                .modes
-                .iter()
-                .map(|mode| mode.contact.powi(2) / (s * s + mode.omega_squared()))
-                .sum();
+            let modes = self.modes.iter();
+            let parts = modes.map(|mode| mode.contact.powi(2) / (s * s + mode.omega_squared()));
+            let compliance: f64 = parts.sum();
             blow.contact_stiffness * (1.0 + blow.contact_damping * s) * compliance - 1.0
         };
         let highest = self.modes.last()?.omega_squared().sqrt();

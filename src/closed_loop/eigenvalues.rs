@@ -42,10 +42,8 @@ fn undamped(problem: &Problem) -> Option<Vec<(f64, f64)>> {
     let total: f64 = problem.modes.iter().map(|(_, tip)| tip * tip).sum();
     let rest = |pole: f64, distance: f64| {
         let others = problem.modes.iter().filter(|(omega, _)| *omega != pole);
-        others
-            .map(|(omega, tip)| tip * tip / ((omega - pole) - distance))
-            .sum::<f64>()
-            + softness
+        let parts = others.map(|(omega, tip)| tip * tip / ((omega - pole) - distance));
+        parts.sum::<f64>() + softness
     };
     let mut found = Vec::with_capacity(problem.modes.len());
     for (n, &(low, tip)) in problem.modes.iter().enumerate() {
@@ -257,11 +255,8 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     }
     // Slowest with fastest, as for a strongly damped mode.
     let (slow, fast) = single.split_at(single.len() / 2);
-    pairs.extend(
-        slow.iter()
-            .zip(fast.iter().rev())
-            .map(|(slow, fast)| Pair::Apart(*slow, *fast)),
-    );
+    let apart = slow.iter().zip(fast.iter().rev());
+    pairs.extend(apart.map(|(slow, fast)| Pair::Apart(*slow, *fast)));
     Some(pairs)
 }
 

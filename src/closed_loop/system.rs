@@ -58,15 +58,8 @@ struct Columns {
 
 impl Columns {
     fn new(size: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let entries = (0..size * size.next_multiple_of(4))
-            .map(|n| {
-                if n < size * size {
-                    entry(n % size, n / size)
-                } else {
-                    0.0
-                }
-            })
-            .collect();
+        let mut entries: Vec<_> = (0..size * size).map(|n| entry(n % size, n / size)).collect();
+        entries.resize(size * size.next_multiple_of(4), 0.0);
         Self { size, entries }
     }
 

@@ -39,7 +39,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::beam::mode::Mode;
 use crate::contact::power::{Power, compliance};
-use crate::scene::{Contact, Scene};
+use crate::scene::{Contact, Material, Scene};
 
 /// Constants of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,10 +184,9 @@ pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
 
 /// `k_t / k = 4 G* / E*`.
 fn stiffness_ratio(contact: &Contact) -> f64 {
-    let materials = [contact.moving, contact.fixed];
-    let tangential: f64 = materials
-        .iter()
-        .map(|material| (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus)
-        .sum();
+    let of = |material: Material| {
+        (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus
+    };
+    let tangential = of(contact.moving) + of(contact.fixed);
     4.0 * compliance(contact) / tangential
 }
