@@ -360,11 +360,8 @@ impl Model {
     /// Longest step allowed from `time` (s) on by scene and generator, s.
     pub fn longest_step(&self, time: f64) -> f64 {
         let generated = self.generator.longest_step(time);
-        if self.scene.solver.maximum_step > 0.0 {
-            generated.min(self.scene.solver.maximum_step)
-        } else {
-            generated
-        }
+        let limit = self.scene.solver.maximum_step;
+        if limit > 0.0 { generated.min(limit) } else { generated }
     }
 
     /// A step short compared with any motion that may begin at `time` (s), s.

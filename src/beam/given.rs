@@ -94,11 +94,8 @@ impl Given {
         };
         let omega_squared = RESIDUAL.powi(2) * highest;
         // Where each mode has its own damping, that of the scene is not meant for this spring.
-        let beta = if self.modes.iter().all(|mode| mode.damping.is_some()) {
-            0.0
-        } else {
-            beta
-        };
+        let own = self.modes.iter().all(|mode| mode.damping.is_some());
+        let beta = if own { 0.0 } else { beta };
         let residual = |compliance: f64, held: f64| {
             let rest = compliance - held;
             (rest > ROUNDING * compliance).then(|| (rest * omega_squared).sqrt())
