@@ -137,11 +137,7 @@ impl Statics {
     }
 
     fn sum(&self, axial_force: f64, product: impl Fn(&Term) -> f64) -> f64 {
-        let Section {
-            length,
-            bending_stiffness,
-            ..
-        } = self.section;
+        let (length, bending_stiffness) = (self.section.length, self.section.bending_stiffness);
         let compression = axial_force * length * length / (4.0 * bending_stiffness);
         let terms = self.terms.iter();
         let parts = terms.map(|term| product(term) / (1.0 - compression * term.sigma));

@@ -34,22 +34,16 @@ pub struct LogSweep {
 impl LogSweep {
     /// From the start time on, for the duration.
     pub fn new(excitation: &Excitation) -> Self {
-        let &Excitation {
-            amplitude,
-            frequency,
-            start_time: start,
-            duration,
-            ..
-        } = excitation;
-        let rate = logarithm(excitation.end_frequency, frequency) / duration;
+        let (frequency, start) = (excitation.frequency, excitation.start_time);
+        let rate = logarithm(excitation.end_frequency, frequency) / excitation.duration;
         let displacement_limit = displacement_limit(excitation);
-        let crossing = (amplitude.abs() / displacement_limit).sqrt() / TAU;
+        let crossing = (excitation.amplitude.abs() / displacement_limit).sqrt() / TAU;
         let window = Window {
             start,
-            end: start + duration,
+            end: start + excitation.duration,
         };
         Self {
-            amplitude,
+            amplitude: excitation.amplitude,
             frequency,
             rate,
             phase: excitation.phase,

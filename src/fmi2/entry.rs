@@ -175,15 +175,9 @@ mod tests {
     fn a_panic_becomes_an_error_that_a_reset_heals() {
         // SAFETY: callbacks that are none, and a null pointer.
         let silent: fmi2CallbackFunctions = unsafe { std::mem::zeroed() };
-        let component = hand_out(
-            Instance::new(
-                Logger::new(&silent, c"relay", false),
-                (None, ptr::null_mut()),
-                None,
-                Identity::default(),
-            )
-            .unwrap(),
-        );
+        let logger = Logger::new(&silent, c"relay", false);
+        let instance = Instance::new(logger, (None, ptr::null_mut()), None, Identity::default());
+        let component = hand_out(instance.unwrap());
         let state = |instance: &mut Instance, expected| {
             assert_eq!(instance.state, expected);
             Ok(())
