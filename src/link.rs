@@ -148,10 +148,8 @@ impl Link {
     /// Approach or its velocity that inputs displaced so far, or moving so fast, give it.
     #[inline(always)]
     pub fn offset(&self, inputs: &Ways) -> f64 {
-        self.driven
-            .iter()
-            .zip(inputs)
-            .fold(0.0, |sum, (driven, input)| sum + driven * input)
+        let pairs = self.driven.iter().zip(inputs);
+        pairs.fold(0.0, |sum, (driven, input)| sum + driven * input)
     }
 
     /// A length with the sign of the contact force, m: [`Law::engagement`] at an approach given as deviation (m); negative

@@ -63,23 +63,14 @@ fn left(ratio: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::free_motion::FreeMotion;
 
-    /// A unit mass on a unit spring, in small steps of the exact motion's Taylor series.
+    /// Velocity with which a unit mass leaves a unit spring, where the force vanishes.
     fn thrown(ratio: f64) -> f64 {
-        let (mut d, mut v) = (0.0, 1.0);
-        let step = 1e-4;
-        loop {
-            let slope = |d: f64, v: f64| -d - 2.0 * ratio * v;
-            let (k1, l1) = (v, slope(d, v));
-            let (k2, l2) = (v + 0.5 * step * l1, slope(d + 0.5 * step * k1, v + 0.5 * step * l1));
-            let (k3, l3) = (v + 0.5 * step * l2, slope(d + 0.5 * step * k2, v + 0.5 * step * l2));
-            let (k4, l4) = (v + step * l3, slope(d + step * k3, v + step * l3));
-            d += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-            v += step / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
-            if v < 0.0 && d + 2.0 * ratio * v <= 0.0 {
-                return -v;
-            }
-        }
+        let motions = (1..).map(|k| FreeMotion::new(1.0, 2.0 * ratio, 1e-4 * f64::from(k)));
+        let mut motions = motions.map(|at| (at.q_from_v, at.v_from_v));
+        let left = motions.find(|(d, v)| *v < 0.0 && d + 2.0 * ratio * v <= 0.0);
+        -left.unwrap().1
     }
 
     #[test]

@@ -155,17 +155,12 @@ impl Model {
 
     /// What a user should know of the scene.
     pub fn remarks(&self) -> Vec<Remark> {
-        let mut remarks: Vec<_> = self.bent_far().into_iter().chain(self.friction_at_touch()).collect();
-        remarks.extend(
-            self.unstable_slip
-                .iter()
-                .filter_map(|unstable| unstable.remark(&self.scene)),
-        );
-        if let Some(spring) = &self.scene.spring {
-            remarks.extend(self.not_used(spring));
-        }
-        remarks.extend(self.few_modes());
-        remarks
+        let unstable = self.unstable_slip.iter();
+        let unstable = unstable.filter_map(|unstable| unstable.remark(&self.scene));
+        let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
+        let remarks = self.bent_far().into_iter().chain(self.friction_at_touch());
+        let remarks = remarks.chain(unstable).chain(not_used);
+        remarks.chain(self.few_modes()).collect()
     }
 
     /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has
@@ -365,11 +360,8 @@ impl Model {
     /// Longest step allowed from `time` (s) on by scene and generator, s.
     pub fn longest_step(&self, time: f64) -> f64 {
         let generated = self.generator.longest_step(time);
-        if self.scene.solver.maximum_step > 0.0 {
-            generated.min(self.scene.solver.maximum_step)
-        } else {
-            generated
-        }
+        let limit = self.scene.solver.maximum_step;
+        if limit > 0.0 { generated.min(limit) } else { generated }
     }
 
     /// A step short compared with any motion that may begin at `time` (s), s.

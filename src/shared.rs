@@ -42,10 +42,9 @@ impl<T> Shared<T> {
 
 impl<T> Clone for Shared<T> {
     fn clone(&self) -> Self {
-        let Self { value, home } = self;
         Self {
-            value: value.clone(),
-            home,
+            value: self.value.clone(),
+            home: self.home,
         }
     }
 }

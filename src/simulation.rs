@@ -60,13 +60,13 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
-        let kept = Kept::default();
         let [support, displacement, pusher] = inputs.displacements_after(0.0);
         let initial = Initial {
             displacements: [support, 0.0, pusher],
             coil: inputs.coil_relative_current,
         };
-        let model = with_room(scene, &initial)?;
+        let mut simulation = Self::at_rest(scene, &initial, start_time)?;
+        let Self { model, motion, .. } = &mut simulation;
         let room = model.room(displacement);
         if room.min(room + model.preload.indentation) <= 0.0 {
             return Err(SceneError::NoGap {
@@ -75,7 +75,6 @@ impl Simulation {
                 least: model.preload.indentation.max(0.0),
             });
         }
-        let mut motion = Motion::at_rest(&model, start_time);
         if model.roles.second.is_some() {
             for state in [&mut motion.start, &mut motion.end] {
                 state.displacements = [0.0, displacement, 0.0];
@@ -85,11 +84,21 @@ impl Simulation {
             }
         }
         motion.current = inputs.contact_current;
-        let workspace = Workspace::new(&model);
+        Ok(simulation)
+    }
+
+    /// The scene at rest in the preload of these inputs; refused where there is no memory to simulate it.
+    fn at_rest(scene: &Scene, initial: &Initial, start_time: f64) -> Result<Self, SceneError> {
+        let kept = Kept::default();
+        let model = Model::starting(scene, initial)?;
+        let needed = Workspace::size(&model);
+        if !memory::has(needed) {
+            return Err(SceneError::Memory(needed));
+        }
         Ok(Self {
+            motion: Motion::at_rest(&model, start_time),
+            workspace: Workspace::new(&model),
             model,
-            motion,
-            workspace,
             _kept: kept,
         })
     }
@@ -138,15 +147,7 @@ impl Simulation {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn resume(scene: &Scene, initial: &Initial, motion: &Motion) -> Result<Self, SceneError> {
-        let kept = Kept::default();
-        let model = with_room(scene, initial)?;
-        let workspace = Workspace::new(&model);
-        let mut simulation = Self {
-            motion: Motion::at_rest(&model, 0.0),
-            model,
-            workspace,
-            _kept: kept,
-        };
+        let mut simulation = Self::at_rest(scene, initial, 0.0)?;
         simulation.go_on_from(motion);
         Ok(simulation)
     }
@@ -380,16 +381,5 @@ impl Simulation {
             // At the instant of closing there is no force yet.
             self.motion.link(&self.model, index).force > 0.0 || closed && !self.model.law().never_opens()
         })
-    }
-}
-
-/// The model of a scene; refused where there is no memory to simulate it.
-fn with_room(scene: &Scene, initial: &Initial) -> Result<Box<Model>, SceneError> {
-    let model = Model::starting(scene, initial)?;
-    let needed = Workspace::size(&model);
-    if memory::has(needed) {
-        Ok(model)
-    } else {
-        Err(SceneError::Memory(needed))
     }
 }

@@ -95,12 +95,8 @@ impl Feedback {
         let y: f64 = modes.iter().zip(states).map(|(mode, at)| mode.tip * at.q).sum();
         let change = self.change(y);
         // Norms relative to the stiffness; that of the slopes of all modes is bounded by the buckling load.
-        let slopes: f64 = self
-            .slopes
-            .iter()
-            .zip(modes)
-            .map(|(g, mode)| g * g / mode.omega_squared)
-            .sum();
+        let pairs = self.slopes.iter().zip(modes);
+        let slopes: f64 = pairs.map(|(g, mode)| g * g / mode.omega_squared).sum();
         let tips: f64 = modes.iter().map(Mode::compliance).sum();
         let geometric = self.geometric.iter().enumerate().zip(modes);
         let trace: f64 = geometric

@@ -118,16 +118,11 @@ impl Space {
     ) -> Option<Vec<(Mode, DVector<f64>)>> {
         let (length, tip_mass) = (section.length, section.tip_mass);
         let (half_mass, half_stiffness) = section.halves();
-        let Places {
-            tip,
-            slope,
-            pusher,
-            parallel,
-        } = &self.at;
+        let at = &self.at;
         let mut mass = self.mass.clone();
-        mass.ger(tip_mass / half_mass, tip, tip, 1.0);
+        mass.ger(tip_mass / half_mass, &at.tip, &at.tip, 1.0);
         let inertia = 4.0 * section.tip_inertia / (length * length * half_mass);
-        mass.ger(inertia, slope, slope, 1.0);
+        mass.ger(inertia, &at.slope, &at.slope, 1.0);
         let factor = self.rigidity(section, axial_force, stiffness).cholesky()?;
         // Eigenvalues mu of R^-1 M R^-T are 1/omega^2: the low modes, which matter most, have full relative accuracy.
         let half = factor.l_dirty().solve_lower_triangular(&mass)?;
@@ -143,14 +138,14 @@ impl Space {
                 // Rounding leaves only the order of magnitude of the highest of many modes.
                 let mu = mu.max(f64::EPSILON * largest);
                 let normalisation = 1.0 / (mu * half_mass).sqrt();
-                let tip = shape.dot(tip) * normalisation;
+                let tip = shape.dot(&at.tip) * normalisation;
                 let mode = Mode {
                     omega_squared: half_stiffness / (half_mass * mu),
                     tip,
                     participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
-                    rotation: 2.0 / length * shape.dot(slope) * normalisation,
-                    pusher: shape.dot(pusher) * normalisation,
-                    parallel: shape.dot(parallel) * normalisation,
+                    rotation: 2.0 / length * shape.dot(&at.slope) * normalisation,
+                    pusher: shape.dot(&at.pusher) * normalisation,
+                    parallel: shape.dot(&at.parallel) * normalisation,
                     ..Mode::default()
                 };
                 (mode, shape * normalisation)

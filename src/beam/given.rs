@@ -94,11 +94,8 @@ impl Given {
         };
         let omega_squared = RESIDUAL.powi(2) * highest;
         // Where each mode has its own damping, that of the scene is not meant for this spring.
-        let beta = if self.modes.iter().all(|mode| mode.damping.is_some()) {
-            0.0
-        } else {
-            beta
-        };
+        let own = self.modes.iter().all(|mode| mode.damping.is_some());
+        let beta = if own { 0.0 } else { beta };
         let residual = |compliance: f64, held: f64| {
             let rest = compliance - held;
             (rest > ROUNDING * compliance).then(|| (rest * omega_squared).sqrt())
@@ -155,11 +152,9 @@ impl Given {
     /// is still stiffer than the spring.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
         let stiffer = |s: f64| {
-            let compliance: f64 = self
-                .modes
-                .iter()
-                .map(|mode| mode.contact.powi(2) / (s * s + mode.omega_squared()))
-                .sum();
+            let modes = self.modes.iter();
+            let parts = modes.map(|mode| mode.contact.powi(2) / (s * s + mode.omega_squared()));
+            let compliance: f64 = parts.sum();
             blow.contact_stiffness * (1.0 + blow.contact_damping * s) * compliance - 1.0
         };
         let highest = self.modes.last()?.omega_squared().sqrt();

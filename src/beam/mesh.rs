@@ -99,16 +99,14 @@ impl Mesh {
         for (stretch, (density, (force, couple))) in self.stretches.iter().zip(loads).rev() {
             shear += force;
             moment += couple;
-            let half = stretch.half;
-            let whole = self.rule.integral(density);
-            let shears: Vec<f64> = self
-                .rule
+            let (half, rule) = (stretch.half, &self.rule);
+            let whole = rule.integral(density);
+            let shears: Vec<f64> = rule
                 .integrals(density)
                 .map(|sum| shear + half * (whole - sum))
                 .collect();
-            let turned = self.rule.integral(&shears);
-            let moments: Vec<f64> = self
-                .rule
+            let turned = rule.integral(&shears);
+            let moments: Vec<f64> = rule
                 .integrals(&shears)
                 .map(|sum| moment + half * (turned - sum))
                 .collect();
@@ -174,7 +172,7 @@ impl Mesh {
 
     /// Under what unit axial compression between clamp and contact does in this shape.
     pub fn compressed(&self, shape: &Bend) -> Bend {
-        let at_contact = self.at_contact(shape).0;
+        let (at_contact, _) = self.at_contact(shape);
         let nodes = self.before_contact * self.rule.len();
         let moment = shape.deflection.iter().enumerate();
         let moment = moment.map(|(n, deflection)| if n < nodes { at_contact - deflection } else { 0.0 });
@@ -183,16 +181,18 @@ impl Mesh {
 
     /// Deflection (m) and slope (1) at the contact.
     pub fn at_contact(&self, shape: &Bend) -> (f64, f64) {
-        let last = self.before_contact.checked_sub(1).and_then(|last| shape.ends.get(last));
-        last.copied().unwrap_or_default()
+        Self::at_end(shape, self.before_contact)
     }
 
     /// Deflection at the pusher, m; 0 without one.
     pub fn at_pusher(&self, shape: &Bend) -> f64 {
-        let last = self
-            .before_pusher
-            .and_then(|before| shape.ends.get(before.checked_sub(1)?));
-        last.map_or(0.0, |(deflection, _)| *deflection)
+        self.before_pusher.map_or(0.0, |before| Self::at_end(shape, before).0)
+    }
+
+    /// The same at the end of so many stretches.
+    fn at_end(shape: &Bend, stretches: usize) -> (f64, f64) {
+        let last = stretches.checked_sub(1).and_then(|last| shape.ends.get(last));
+        last.copied().unwrap_or_default()
     }
 
     /// Factors of the products of deflections in the kinetic energy, and of slopes in the work of an axial compression:
@@ -311,16 +311,17 @@ impl Rule {
     }
 
     fn integral(&self, values: &[f64]) -> f64 {
-        self.weights
-            .iter()
-            .zip(values)
-            .map(|(weight, value)| weight * value)
-            .sum()
+        dot(&self.weights, values)
     }
 
     /// From -1 to each node.
     fn integrals(&self, values: &[f64]) -> impl Iterator<Item = f64> {
         let rows = self.partial.chunks_exact(self.len());
-        rows.map(move |row| row.iter().zip(values).map(|(entry, value)| entry * value).sum())
+        rows.map(move |row| dot(row, values))
     }
+}
+
+/// Scalar product.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

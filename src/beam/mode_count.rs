@@ -74,16 +74,9 @@ impl Blow {
 
     /// The largest wave number `x` that the blow excites, 1 / L.
     fn wave_number(&self, section: &Section) -> f64 {
-        let Section {
-            length,
-            bending_stiffness,
-            mass_per_length,
-            tip_mass,
-            ..
-        } = *section;
         let rate = section.rate();
-        let stiffness = self.contact_stiffness * length.powi(3) / bending_stiffness;
-        let mass = tip_mass / (mass_per_length * length);
+        let stiffness = self.contact_stiffness * section.length.powi(3) / section.bending_stiffness;
+        let mass = section.tip_mass / (section.mass_per_length * section.length);
         let (beam, contact) = (self.stiffness_damping * rate, self.contact_damping * rate);
         let wave = |s: f64| (s * s / (1.0 + beam * s)).sqrt().sqrt();
         let stiffer = |s: f64| stiffness * (1.0 + contact * s) - (1.0 + beam * s) * wave(s).powi(3) - mass * s * s;

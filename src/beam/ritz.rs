@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::{Places, Space};
-use crate::beam::mesh::{Bend, Mesh};
+use crate::beam::mesh::{Bend, Mesh, dot};
 use crate::beam::pieces::Pieces;
 use crate::beam::section::Section;
 
@@ -111,13 +111,8 @@ fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
         nodes.map(|(length, slope)| length.sqrt() * slope).collect()
     };
     let loaded = |shape: &Bend| -> f64 {
-        let inside: f64 = masses.iter().zip(&shape.deflection).map(|(mass, y)| mass * y).sum();
-        inside
-            + ends
-                .iter()
-                .zip(&shape.ends)
-                .map(|((mass, _), (y, _))| mass * y)
-                .sum::<f64>()
+        let carried = ends.iter().zip(&shape.ends).map(|((mass, _), (y, _))| mass * y);
+        dot(&masses, &shape.deflection) + carried.sum::<f64>()
     };
     let vector = |value: &dyn Fn(&Bend) -> f64| DVector::from_iterator(shapes.len(), shapes.iter().map(value));
     Space::with(

@@ -23,7 +23,7 @@ use crate::beam::statics::AtPlace;
 use crate::beam::tongues::Tongues;
 use crate::contact::friction::tangential_share;
 use crate::math::simd::LANES;
-use crate::scene::{Beam, Scene, Tip};
+use crate::scene::Scene;
 use crate::variables::{AxialForceKind, PusherKind};
 
 /// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
@@ -200,22 +200,13 @@ pub struct FixedSpring {
 impl FixedSpring {
     /// That of a scene, if it has one.
     fn new(scene: &Scene) -> Option<Self> {
-        let mut own = Scene {
-            spring: Some(scene.fixed_spring.clone()?),
-            fixed_spring: None,
-            tip: Tip {
-                mass: 0.0,
-                rotary_inertia: 0.0,
-                ..scene.tip
-            },
-            beam: Beam {
-                mass_damping: scene.fixed.mass_damping,
-                stiffness_damping: scene.fixed.stiffness_damping,
-                axial_force: 0.0,
-                ..scene.beam
-            },
-            ..scene.clone()
-        };
+        let spring = scene.fixed_spring.clone()?;
+        let mut own = scene.clone();
+        (own.spring, own.fixed_spring) = (Some(spring), None);
+        (own.tip.mass, own.tip.rotary_inertia) = (0.0, 0.0);
+        own.beam.mass_damping = scene.fixed.mass_damping;
+        own.beam.stiffness_damping = scene.fixed.stiffness_damping;
+        own.beam.axial_force = 0.0;
         own.effects.axial_force = AxialForceKind::None;
         own.effects.pusher = PusherKind::None;
         own.effects.parallel_contact = false;

@@ -137,18 +137,11 @@ impl Statics {
     }
 
     fn sum(&self, axial_force: f64, product: impl Fn(&Term) -> f64) -> f64 {
-        let Section {
-            length,
-            bending_stiffness,
-            ..
-        } = self.section;
+        let (length, bending_stiffness) = (self.section.length, self.section.bending_stiffness);
         let compression = axial_force * length * length / (4.0 * bending_stiffness);
-        let sum: f64 = self
-            .terms
-            .iter()
-            .map(|term| product(term) / (1.0 - compression * term.sigma))
-            .sum();
-        sum * length.powi(3) / (8.0 * bending_stiffness)
+        let terms = self.terms.iter();
+        let parts = terms.map(|term| product(term) / (1.0 - compression * term.sigma));
+        parts.sum::<f64>() * length.powi(3) / (8.0 * bending_stiffness)
     }
 }
 

@@ -28,14 +28,12 @@ impl Tongues {
         let Shape::Segments(segments) = &file.shape else {
             return None;
         };
-        let mut own = Scene {
-            spring: Some(Arc::new(SpringFile {
-                name: file.name.clone(),
-                shape: Shape::Segments(beyond(segments, segments.fork_position?)),
-            })),
-            fixed_spring: None,
-            ..scene.clone()
-        };
+        let mut own = scene.clone();
+        own.spring = Some(Arc::new(SpringFile {
+            name: file.name.clone(),
+            shape: Shape::Segments(beyond(segments, segments.fork_position?)),
+        }));
+        own.fixed_spring = None;
         own.effects.pusher = PusherKind::None;
         let spring = Spring::new(&own);
         Some(Self { scene: own, spring })
@@ -53,30 +51,22 @@ impl Tongues {
 
 /// What lies beyond a fork, as a spring of its own.
 fn beyond(spring: &Segments, fork: f64) -> Segments {
-    let mut start = 0.0;
-    let mut segments = Vec::new();
-    for segment in &spring.segments {
-        let end = start + segment.length;
-        if end > fork {
-            segments.push(from(segment, (fork - start).max(0.0)));
-        }
-        start = end;
-    }
+    let mut end = 0.0;
+    let segments = spring.segments.iter().filter_map(|segment| {
+        let cut = (fork - end).max(0.0);
+        end += segment.length;
+        (end > fork).then(|| from(segment, cut))
+    });
+    let masses = spring.masses.iter().filter(|mass| mass.position > fork);
     let moved = |mass: &PointMass| PointMass {
         position: mass.position - fork,
         ..*mass
     };
     Segments {
-        segments,
-        masses: spring
-            .masses
-            .iter()
-            .filter(|mass| mass.position > fork)
-            .map(moved)
-            .collect(),
+        segments: segments.collect(),
+        masses: masses.map(moved).collect(),
         contact_position: spring.contact_position.map(|position| position - fork),
-        fork_position: None,
-        clamp_stiffness: None,
+        ..Segments::default()
     }
 }
 

@@ -42,10 +42,8 @@ fn undamped(problem: &Problem) -> Option<Vec<(f64, f64)>> {
     let total: f64 = problem.modes.iter().map(|(_, tip)| tip * tip).sum();
     let rest = |pole: f64, distance: f64| {
         let others = problem.modes.iter().filter(|(omega, _)| *omega != pole);
-        others
-            .map(|(omega, tip)| tip * tip / ((omega - pole) - distance))
-            .sum::<f64>()
-            + softness
+        let parts = others.map(|(omega, tip)| tip * tip / ((omega - pole) - distance));
+        parts.sum::<f64>() + softness
     };
     let mut found = Vec::with_capacity(problem.modes.len());
     for (n, &(low, tip)) in problem.modes.iter().enumerate() {
@@ -60,18 +58,9 @@ fn undamped(problem: &Problem) -> Option<Vec<(f64, f64)>> {
             _ => (low, tip, roots::bracketed(left, 0.0, gap * (1.0 + 1e-9))?),
         };
         // A mode of unit contact force has q_i = T_i / (omega_i^2 - nu), its tip moves by 1 / k.
-        let mass: f64 = problem
-            .modes
-            .iter()
-            .map(|(omega, tip)| {
-                let p = if *omega == pole {
-                    -distance
-                } else {
-                    (omega - pole) - distance
-                };
-                (tip / p).powi(2)
-            })
-            .sum();
+        let squares = problem.modes.iter();
+        let squares = squares.map(|(omega, tip)| (tip / ((omega - pole) - distance)).powi(2));
+        let mass: f64 = squares.sum();
         if pole_tip == 0.0 || !mass.is_finite() {
             return None;
         }
@@ -123,11 +112,7 @@ fn damped_differently(problem: &Problem, undamped: &[(f64, f64)]) -> Option<Vec<
             // Limit the change, or the zero may diverge.
             let change = newton / (1.0 - newton * repulsion);
             let farthest = 0.5 * zero.value.norm();
-            let change = if change.norm() > farthest {
-                change * (farthest / change.norm())
-            } else {
-                change
-            };
+            let change = change * (farthest / change.norm()).min(1.0);
             // At a pole to rounding: converged.
             let change = if change.is_finite() { change } else { Complex::default() };
             let beam = zero.beam - change * problem.stiffness_damping;
@@ -257,11 +242,8 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
     }
     // Slowest with fastest, as for a strongly damped mode.
     let (slow, fast) = single.split_at(single.len() / 2);
-    pairs.extend(
-        slow.iter()
-            .zip(fast.iter().rev())
-            .map(|(slow, fast)| Pair::Apart(*slow, *fast)),
-    );
+    let apart = slow.iter().zip(fast.iter().rev());
+    pairs.extend(apart.map(|(slow, fast)| Pair::Apart(*slow, *fast)));
     Some(pairs)
 }
 

@@ -10,7 +10,7 @@
 //! omega_i^2`, `p_i = l (l + alpha) + omega_i^2 h` with `h = 1 + beta l`. Many slow zeros cluster at `l = -1 / beta`,
 //! where only `h` separates them, so `h` is computed along with `l` and not from it.
 
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::{Add, Div, Mul};
 
 /// The beam and its contact.
 #[derive(Clone, Debug)]
@@ -86,13 +86,6 @@ impl Add<f64> for Number {
     type Output = Self;
     fn add(self, other: f64) -> Self {
         Self::new(self.mean + other, self.slope, self.square)
-    }
-}
-
-impl Sub for Number {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + other * -1.0
     }
 }
 

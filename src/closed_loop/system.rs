@@ -58,15 +58,8 @@ struct Columns {
 
 impl Columns {
     fn new(size: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let entries = (0..size * size.next_multiple_of(4))
-            .map(|n| {
-                if n < size * size {
-                    entry(n % size, n / size)
-                } else {
-                    0.0
-                }
-            })
-            .collect();
+        let mut entries: Vec<_> = (0..size * size).map(|n| entry(n % size, n / size)).collect();
+        entries.resize(size * size.next_multiple_of(4), 0.0);
         Self { size, entries }
     }
 
@@ -279,13 +272,14 @@ impl ClosedLoop {
         let (x, v) = free.split_at(count);
         let mut moved = [0.0; 2 * MAX_MODES];
         let (x_end, v_end) = moved.split_at_mut(count);
-        let steps = propagator.x_from_x.iter().zip(&propagator.x_from_v);
-        for (((end, x), v), (from_x, from_v)) in x_end.iter_mut().zip(x).zip(v).zip(steps) {
-            *end = from_x * x + from_v * v;
-        }
-        let steps = propagator.v_from_x.iter().zip(&propagator.v_from_v);
-        for (((end, x), v), (from_x, from_v)) in v_end.iter_mut().zip(x).zip(v).zip(steps) {
-            *end = from_x * x + from_v * v;
+        for (ends, from_x, from_v) in [
+            (x_end, &propagator.x_from_x, &propagator.x_from_v),
+            (v_end, &propagator.v_from_x, &propagator.v_from_v),
+        ] {
+            let steps = from_x.iter().zip(from_v);
+            for (((end, x), v), (from_x, from_v)) in ends.iter_mut().zip(x).zip(v).zip(steps) {
+                *end = from_x * x + from_v * v;
+            }
         }
         self.add_particular(&mut moved, steady, 1.0);
         let generated = propagator.from_sine.iter().zip(&propagator.from_cosine);

@@ -38,8 +38,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::beam::mode::Mode;
-use crate::contact::power::Power;
-use crate::scene::{Contact, Scene};
+use crate::contact::power::{Power, compliance};
+use crate::scene::{Contact, Material, Scene};
 
 /// Constants of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,30 +130,22 @@ pub(crate) struct Stick {
 impl Friction {
     /// Of a scene, if it has friction, on these modes.
     pub(crate) fn new(scene: &Scene, modes: &[Mode]) -> Option<Self> {
-        scene.rubs().then(|| {
-            Self {
-                coefficient: scene.friction.coefficient,
-                ratio: stiffness_ratio(&scene.contact),
-                height: scene.tip.contact_height,
-                stiffness: 0.0,
-                inertia: 0.0,
-            }
-            .on(modes)
-        })
-    }
-
-    /// On these modes.
-    #[must_use]
-    pub(crate) fn on(mut self, modes: &[Mode]) -> Self {
+        let height = scene.tip.contact_height;
         let sum = |load: &dyn Fn(&Mode) -> f64| -> f64 {
             let parts = modes.iter().map(|mode| mode.rotation * load(mode) / mode.omega_squared);
-            self.height * parts.sum::<f64>()
+            height * parts.sum::<f64>()
         };
-        let stiffness = 1.0 / sum(&|mode| self.height * mode.rotation);
+        let stiffness = 1.0 / sum(&|mode| height * mode.rotation);
         let inertia = stiffness * sum(&|mode| mode.participation).abs();
         let held = stiffness.is_finite() && inertia.is_finite();
-        (self.stiffness, self.inertia) = if held { (stiffness, inertia) } else { (0.0, 0.0) };
-        self
+        let (stiffness, inertia) = if held { (stiffness, inertia) } else { (0.0, 0.0) };
+        scene.rubs().then(|| Self {
+            coefficient: scene.friction.coefficient,
+            ratio: stiffness_ratio(&scene.contact),
+            height,
+            stiffness,
+            inertia,
+        })
     }
 
     /// Trial force of stick at the indentation `d` (m), where the tangential spring is deflected by `z` (m) and goes on at
@@ -192,14 +184,9 @@ pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
 
 /// `k_t / k = 4 G* / E*`.
 fn stiffness_ratio(contact: &Contact) -> f64 {
-    let materials = [contact.moving, contact.fixed];
-    let normal: f64 = materials
-        .iter()
-        .map(|material| (1.0 - material.poisson_ratio.powi(2)) / material.youngs_modulus)
-        .sum();
-    let tangential: f64 = materials
-        .iter()
-        .map(|material| (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus)
-        .sum();
-    4.0 * normal / tangential
+    let of = |material: Material| {
+        (2.0 - material.poisson_ratio) * 2.0 * (1.0 + material.poisson_ratio) / material.youngs_modulus
+    };
+    let tangential = of(contact.moving) + of(contact.fixed);
+    4.0 * compliance(contact) / tangential
 }

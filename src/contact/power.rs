@@ -14,7 +14,7 @@
 
 use crate::contact::{Branch, Branches};
 use crate::math::nodal::Nodal;
-use crate::scene::{Contact, Scene};
+use crate::scene::{Contact, Material, Scene};
 use crate::variables::ContactLawKind;
 
 /// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
@@ -42,34 +42,37 @@ pub struct Power {
     pub least: f64,
 }
 
-/// Reduced modulus E* of the two materials, Pa: `1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2`.
+/// Reduced modulus E* of the two materials, Pa.
 pub fn reduced_modulus(contact: &Contact) -> f64 {
-    let compliance = |nu: f64, e: f64| (1.0 - nu * nu) / e;
-    1.0 / (compliance(contact.moving.poisson_ratio, contact.moving.youngs_modulus)
-        + compliance(contact.fixed.poisson_ratio, contact.fixed.youngs_modulus))
+    1.0 / compliance(contact)
+}
+
+/// Its reciprocal, 1/Pa: `1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2`.
+pub(crate) fn compliance(contact: &Contact) -> f64 {
+    let of = |material: Material| (1.0 - material.poisson_ratio.powi(2)) / material.youngs_modulus;
+    of(contact.moving) + of(contact.fixed)
 }
 
 impl Power {
-    /// Smooth spheres: Hertz, from the two materials and the radius of curvature.
-    pub fn hertz(contact: &Contact) -> Self {
+    fn new(coefficient: f64, exponent: f64, damping: f64) -> Self {
         Self {
-            coefficient: 4.0 / 3.0 * reduced_modulus(contact) * contact.curvature_radius.sqrt(),
-            exponent: HERTZ,
-            damping: contact.damping,
+            coefficient,
+            exponent,
+            damping,
             traces: 0.0,
             least: 0.0,
         }
     }
 
+    /// Smooth spheres: Hertz, from the two materials and the radius of curvature.
+    pub fn hertz(contact: &Contact) -> Self {
+        let coefficient = 4.0 / 3.0 * reduced_modulus(contact) * contact.curvature_radius.sqrt();
+        Self::new(coefficient, HERTZ, contact.damping)
+    }
+
     /// A linear spring (N/m) with a damper (N s/m) that acts while it is compressed.
     pub fn linear(stiffness: f64, damping: f64) -> Self {
-        Self {
-            coefficient: stiffness,
-            exponent: 1.0,
-            damping: damping / stiffness,
-            traces: 0.0,
-            least: 0.0,
-        }
+        Self::new(stiffness, 1.0, damping / stiffness)
     }
 
     /// Rough surfaces, from the tangent stiffness at a force, and how it grows with the force.
@@ -77,30 +80,18 @@ impl Power {
         let n = contact.stiffness_exponent;
         let exponent = 1.0 / (1.0 - n);
         // A third, as near as a number comes to it, is Hertz: square roots are cheaper than powers.
-        let exponent = if (exponent - HERTZ).abs() < 2.0 * f64::EPSILON {
-            HERTZ
-        } else {
-            exponent
-        };
-        Self {
-            coefficient: ((1.0 - n) * contact.stiffness * contact.stiffness_force.powf(-n)).powf(exponent),
-            exponent,
-            damping: contact.damping,
-            traces: 0.0,
-            least: 0.0,
-        }
+        let is_hertz = (exponent - HERTZ).abs() < 2.0 * f64::EPSILON;
+        let exponent = if is_hertz { HERTZ } else { exponent };
+        let base = (1.0 - n) * contact.stiffness * contact.stiffness_force.powf(-n);
+        Self::new(base.powf(exponent), exponent, contact.damping)
     }
 
     /// The contact of a scene before it is linearised, without damping if that is switched off.
     pub(crate) fn of(scene: &Scene) -> Self {
-        let contact = Contact {
-            damping: if scene.effects.contact_damping {
-                scene.contact.damping
-            } else {
-                0.0
-            },
-            ..scene.contact
-        };
+        let mut contact = scene.contact;
+        if !scene.effects.contact_damping {
+            contact.damping = 0.0;
+        }
         match scene.effects.contact_law {
             ContactLawKind::Rough => Self::rough(&contact),
             ContactLawKind::Hertz | ContactLawKind::Linearised | ContactLawKind::Bonded => Self::hertz(&contact),

@@ -34,22 +34,16 @@ pub struct LogSweep {
 impl LogSweep {
     /// From the start time on, for the duration.
     pub fn new(excitation: &Excitation) -> Self {
-        let &Excitation {
-            amplitude,
-            frequency,
-            start_time: start,
-            duration,
-            ..
-        } = excitation;
-        let rate = logarithm(excitation.end_frequency, frequency) / duration;
+        let (frequency, start) = (excitation.frequency, excitation.start_time);
+        let rate = logarithm(excitation.end_frequency, frequency) / excitation.duration;
         let displacement_limit = displacement_limit(excitation);
-        let crossing = (amplitude.abs() / displacement_limit).sqrt() / TAU;
+        let crossing = (excitation.amplitude.abs() / displacement_limit).sqrt() / TAU;
         let window = Window {
             start,
-            end: start + duration,
+            end: start + excitation.duration,
         };
         Self {
-            amplitude,
+            amplitude: excitation.amplitude,
             frequency,
             rate,
             phase: excitation.phase,
@@ -111,12 +105,9 @@ impl LogSweep {
     /// The next instant after `time` (s) at which it starts, crosses over or ends.
     #[inline(never)]
     pub fn next_break(&self, time: f64) -> Option<f64> {
-        let next = self.window.next_end(time);
         let crossover = self.crossover.filter(|crossover| *crossover > time);
-        match (next, crossover) {
-            (Some(end), Some(crossover)) => Some(end.min(crossover)),
-            _ => next,
-        }
+        let end = self.window.next_end(time)?;
+        Some(crossover.map_or(end, |crossover| end.min(crossover)))
     }
 
     /// The shorter of a quarter of the period at `time` (s) and the time in which the frequency changes by a factor of

@@ -60,20 +60,13 @@ pub(crate) fn turned(frequency: f64, time: f64) -> f64 {
 
 /// The largest displacement amplitude of a scene, m; infinite without a limit.
 pub(crate) fn displacement_limit(excitation: &Excitation) -> f64 {
-    if excitation.displacement_limit > 0.0 {
-        excitation.displacement_limit
-    } else {
-        f64::INFINITY
-    }
+    let limit = excitation.displacement_limit;
+    if limit > 0.0 { limit } else { f64::INFINITY }
 }
 
 /// An amplitude (m/s2) of either sign within a displacement limit (m) at a frequency (Hz): the crossover of vibration
 /// standards.
 pub(crate) fn limited(amplitude: f64, limit: f64, frequency: f64) -> f64 {
     let largest = (TAU * frequency).powi(2) * limit;
-    if amplitude.abs() > largest {
-        largest.copysign(amplitude)
-    } else {
-        amplitude
-    }
+    amplitude.abs().min(largest).copysign(amplitude)
 }

@@ -173,22 +173,11 @@ mod tests {
     #[test]
     #[allow(clippy::panic)]
     fn a_panic_becomes_an_error_that_a_reset_heals() {
-        let silent = fmi2CallbackFunctions {
-            logger: None,
-            allocateMemory: None,
-            freeMemory: None,
-            stepFinished: None,
-            componentEnvironment: ptr::null_mut(),
-        };
-        let component = hand_out(
-            Instance::new(
-                Logger::new(&silent, c"relay", false),
-                (None, ptr::null_mut()),
-                None,
-                Identity::default(),
-            )
-            .unwrap(),
-        );
+        // SAFETY: callbacks that are none, and a null pointer.
+        let silent: fmi2CallbackFunctions = unsafe { std::mem::zeroed() };
+        let logger = Logger::new(&silent, c"relay", false);
+        let instance = Instance::new(logger, (None, ptr::null_mut()), None, Identity::default());
+        let component = hand_out(instance.unwrap());
         let state = |instance: &mut Instance, expected| {
             assert_eq!(instance.state, expected);
             Ok(())

@@ -61,29 +61,3 @@ pub fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
         pairs.take(count - group * LANES)
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::gauss;
-
-    #[test]
-    fn gauss_quadrature_is_exact_to_its_degree() {
-        for count in [1_usize, 2, 4, 7, 43] {
-            for power in 0..2 * count {
-                let sum: f64 = gauss(count)
-                    .map(|(x, w)| w * x.powi(i32::try_from(power).unwrap()))
-                    .sum();
-                let exact = if power % 2 == 0 {
-                    2.0 / (power as f64 + 1.0)
-                } else {
-                    0.0
-                };
-                // A sum of `count` terms of size 1 rounds to about count * 2^-53.
-                assert!(
-                    (sum - exact).abs() < 4e-15 * count as f64,
-                    "{count} {power}: {sum} {exact}"
-                );
-            }
-        }
-    }
-}

@@ -2,7 +2,7 @@
 //! step. About an end, rounding would be a thousand times as large.
 
 use crate::math::nodal::LONG;
-use crate::math::simd::Arithmetic;
+use crate::math::simd::{Arithmetic, Separate};
 
 /// Coefficients of a polynomial through the nodes of a step: of powers of [`centred`] time.
 pub type Prediction = [f64; LONG + 1];
@@ -38,12 +38,8 @@ pub fn parabola_in_time(by_root: &Prediction) -> Prediction {
 
 /// A polynomial at `y`, relative to the end of the step in step lengths, and its derivative by `y` (Horner's rule).
 pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
-    let z = centred(y);
-    let terms = coefficients.iter().rev();
-    let (value, slope) = terms.fold((0.0, 0.0), |(value, slope), coefficient| {
-        (value * z + coefficient, slope * z + value)
-    });
-    (value, 2.0 * slope)
+    let ([value], [slope]) = values_and_slopes::<1, Separate>(coefficients, &[y]);
+    (value, slope)
 }
 
 /// The same at several places, side by side.

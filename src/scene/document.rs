@@ -148,6 +148,15 @@ impl<'a> Entry<'a> {
         Some(Value { text, node })
     }
 
+    /// What a key holds, read so; errors with its line.
+    pub(crate) fn get<T>(
+        &self,
+        key: &str,
+        read: impl FnOnce(Value<'a>) -> Result<T, SceneError>,
+    ) -> Result<Option<T>, SceneError> {
+        self.value(key).map(|value| value.at(read(value))).transpose()
+    }
+
     /// Adds line and entry to an error.
     pub(crate) fn at<T>(&self, place: &Range<usize>, result: Result<T, SceneError>) -> Result<T, SceneError> {
         result.map_err(|error| {

@@ -85,27 +85,22 @@ impl SceneFile {
         top.knows(&["title", "stop", "communicationStep", "outputs", "parameters", "inputs"])?;
         let missing = |name, allowed| SceneError::MissingKey { name, allowed };
         let seconds = |name| {
-            let value = top.value(name).ok_or(missing(name, "a positive number of seconds"))?;
-            value.at(positive(name, value))
+            let seconds = top.get(name, |value| positive(name, value))?;
+            seconds.ok_or(missing(name, "a positive number of seconds"))
         };
-        let table = |name| {
-            let value = top.value(name);
-            value.map(|value| value.at(value.table(name, "a table"))).transpose()
-        };
+        let table = |name| top.get(name, |value| value.table(name, "a table"));
         let (parameters, inputs) = (table("parameters")?, table("inputs")?);
-        let title = top.value("title");
-        let title = title
-            .map(|value| value.at(value.string("title", "a string")))
-            .transpose()?;
+        let title = top.get("title", |value| value.string("title", "a string"))?;
         let outputs = top.value("outputs").ok_or(missing("outputs", OUTPUTS))?;
         let outputs = outputs.at(outputs.list("outputs", OUTPUTS))?.map(|output| {
             let name = output.string("outputs", OUTPUTS);
             output.at(name.and_then(|name| variable(Role::Output, name)))
         });
-        let driving = inputs.as_ref().and_then(|inputs| inputs.value(FILE));
-        let driving = driving.map(|value| {
-            let name = value.string(FILE, "the path of an input table, as a string");
-            value.at(name.and_then(|name| InputTable::read(&folder.join(name))))
+        let driving = inputs.as_ref().map(|inputs| {
+            inputs.get(FILE, |value| {
+                let name = value.string(FILE, "the path of an input table, as a string")?;
+                InputTable::read(&folder.join(name))
+            })
         });
         let mut file = Self {
             title: title.unwrap_or_default().to_owned(),
@@ -114,7 +109,7 @@ impl SceneFile {
             outputs: outputs.collect::<Result<_, _>>()?,
             scene: Scene::default(),
             inputs: Inputs::default(),
-            table: driving.transpose()?.unwrap_or_default(),
+            table: driving.transpose()?.flatten().unwrap_or_default(),
             folder: folder.to_owned(),
         };
         for (role, table) in [(Role::Parameter, parameters), (Role::Input, inputs)] {

@@ -15,7 +15,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 use crate::error::SceneError;
 use crate::inputs::Inputs;
 use crate::scene::check_range;
-use crate::scene::document::of_file;
+use crate::scene::document::{located, of_file};
 use crate::scene::names::{Role, variable};
 use crate::variables::{Group, RealInput};
 
@@ -174,10 +174,7 @@ fn at_line<T>(text: &str, row: &StringRecord, result: Result<T, SceneError>) -> 
         let position = row.position().map_or(0, csv::Position::byte);
         let position = usize::try_from(position).unwrap_or(usize::MAX);
         let empty = text.bytes().skip(position).take_while(|byte| b"\r\n".contains(byte));
-        let before = text.bytes().take(position.saturating_add(empty.count()));
-        SceneError::AtLine {
-            line: 1 + before.filter(|byte| *byte == b'\n').count(),
-            error: Box::new(error),
-        }
+        let start = position.saturating_add(empty.count());
+        located(text, &(start..start), error)
     })
 }

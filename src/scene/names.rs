@@ -1,5 +1,7 @@
 //! The variable names allowed in a scene file or an input table.
 
+use std::borrow::Borrow;
+
 use crate::error::SceneError;
 use crate::variables::{Group, VARIABLES, Variable};
 
@@ -52,6 +54,6 @@ pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, Scen
 }
 
 /// Names separated by commas.
-pub(crate) fn list(names: impl Iterator<Item = &'static str>) -> String {
+pub(crate) fn list<S: Borrow<str>>(names: impl Iterator<Item = S>) -> String {
     names.collect::<Vec<_>>().join(", ")
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::error::{SceneError, number};
+use crate::scene::names::list;
 use crate::scene::spring::SpringFile;
 use crate::scene::{Scene, choices};
 use crate::variables::{
@@ -73,14 +74,11 @@ impl Scene {
     /// # Errors
     /// [`SceneError::UnknownChoice`] for a number without a choice; the scene is then unchanged.
     pub fn set_enumeration(&mut self, parameter: EnumerationParameter, value: i32) -> Result<(), SceneError> {
+        let choices = choices(parameter);
         let unknown = || SceneError::UnknownChoice {
             name: parameter.variable().name,
             value: value.to_string(),
-            allowed: choices(parameter)
-                .iter()
-                .map(|(label, number)| format!("{number} ({label})"))
-                .collect::<Vec<_>>()
-                .join(", "),
+            allowed: list(choices.iter().map(|(label, number)| format!("{number} ({label})"))),
         };
         self.choose(parameter, value).ok_or_else(unknown)
     }

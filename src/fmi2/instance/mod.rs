@@ -268,11 +268,8 @@ impl Instance {
         let is_off = off > slack;
         let (start, size) = if is_off { (now, end - now) } else { (point, size) };
         // Importers that sum up their steps accumulate rounding errors, far below a thousandth of a step in any run.
-        if let Some(stop) = self
-            .experiment
-            .stop_time
-            .filter(|stop| end > stop + slack.max(1e-3 * size))
-        {
+        let stop = self.experiment.stop_time;
+        if let Some(stop) = stop.filter(|stop| end > stop + slack.max(1e-3 * size)) {
             let (end, stop) = (number(end), number(stop));
             let allowed = format!("the step ends at {end} s, after the stop time {stop} s of the experiment");
             return refused("communicationStepSize", size, allowed);

@@ -159,20 +159,17 @@ impl Instance {
     /// The value of a string parameter, kept until it is read again: a call may ask for all, and for the same one twice.
     pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
         let variable = find("String", reference)?;
-        match variable.group {
-            Group::StringParameter(parameter) => {
-                let value = self.scene.string(parameter);
-                let Some(text) = self.texts.get_mut(parameter as usize) else {
-                    return Err(wrong_type("String", variable));
-                };
-                if text.to_bytes() != value.as_bytes() {
-                    // Set from C, or by a state, which may hold anything.
-                    *text = CString::new(value).unwrap_or_default();
-                }
-                Ok(text)
-            }
-            _ => Err(wrong_type("String", variable)),
+        let wrong = || wrong_type("String", variable);
+        let Group::StringParameter(parameter) = variable.group else {
+            return Err(wrong());
+        };
+        let value = self.scene.string(parameter);
+        let text = self.texts.get_mut(parameter as usize).ok_or_else(wrong)?;
+        if text.to_bytes() != value.as_bytes() {
+            // Set from C, or by a state, which may hold anything.
+            *text = CString::new(value).unwrap_or_default();
         }
+        Ok(text)
     }
 
     /// Sets first derivatives of continuous inputs; all of them or, on an error, none. Higher ones have no effect.
