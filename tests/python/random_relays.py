@@ -130,8 +130,8 @@ def compare(number: int) -> Compared | None:
     if not events:
         return None
     scale = max(scale, float(fine.max()))
-    deviations = [float(np.abs(each - fine).max()) / scale for each in (forces, tightest, coarse)]
-    return Compared(relay, events, *deviations, told)
+    deviation, at_best, change = (float(np.abs(each - fine).max()) / scale for each in (forces, tightest, coarse))
+    return Compared(relay, events, deviation, at_best, change, told)
 
 
 def table(compared: list[Compared]) -> str:
