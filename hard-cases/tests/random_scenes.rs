@@ -9,7 +9,7 @@
 use hard_cases::ride::{Ride, Segment};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use relay_contact::error::Remark;
+use relay_contact::error::{Remark, StepError, StepErrorCause};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::{Scene, choices};
 use relay_contact::simulation::Simulation;
@@ -159,6 +159,14 @@ fn slips_by_itself(scene: &Scene) -> bool {
     remarks.any(|remark| matches!(remark, Remark::UnstableSlip { .. }))
 }
 
+/// Whether the work of a communication step was too much for a spring without damping: its highest modes ring on, and at the tightest
+/// tolerances steps are as short as their periods, tenths of a nanosecond.
+fn rings_for_ever(scene: &Scene, error: &anyhow::Error) -> bool {
+    let budget = |error: &StepError| error.cause == StepErrorCause::Budget;
+    let exhausted = error.chain().any(|cause| cause.downcast_ref().is_some_and(budget));
+    exhausted && scene.beam.stiffness_damping == 0.0
+}
+
 proptest! {
     #![proptest_config(config())]
 
@@ -180,7 +188,8 @@ proptest! {
     #[test]
     fn every_scene_at_any_tolerance_is_refused_or_runs(ride in ride(0.0)) {
         if !is_refused(&ride.scene) && let Err(error) = ride.run(4) {
-            prop_assert!(slips_by_itself(&ride.scene), "{error:#}: {}", summary(&ride));
+            let told = slips_by_itself(&ride.scene) || rings_for_ever(&ride.scene, &error);
+            prop_assert!(told, "{error:#}: {}", summary(&ride));
         }
     }
 
