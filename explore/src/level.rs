@@ -33,6 +33,7 @@ pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], RunError> {
     scene.effects.excitation = ExcitationKind::Sine;
     scene.excitation.frequency = frequency;
     scene.excitation.start_time = 0.0;
+    scene.excitation.rise_time = settling(&scene, &file.inputs)?;
     let linear = reference::opening_threshold(&Model::new(&scene, 0.0)?, TAU * frequency);
     let mut opens = |amplitude: f64| {
         scene.excitation.amplitude = amplitude;
@@ -65,19 +66,21 @@ pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], RunError> {
     Ok([high, linear])
 }
 
-/// Whether the contact opens in steady vibration: after it has risen to the level and was held, each for as long as the start
-/// takes to die away.
-fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, RunError> {
-    let mut scene = scene.clone();
+/// Time after which the start of a vibration has died away, s: whole periods.
+fn settling(scene: &Scene, inputs: &Inputs) -> Result<f64, RunError> {
     let frequency = scene.excitation.frequency;
-    let natural = TAU * Simulation::new(&scene, inputs, 0.0)?.real(RealOutput::PreloadFrequency);
+    let natural = TAU * Simulation::new(scene, inputs, 0.0)?.real(RealOutput::PreloadFrequency);
     let decay = 0.5 * (scene.beam.mass_damping + scene.beam.stiffness_damping * natural.powi(2));
     let settling = DECADES * 10.0_f64.ln() / decay;
-    scene.excitation.rise_time = (settling * frequency).clamp(2.0, 1000.0).ceil() / frequency;
-    let mut contact = Simulation::new(&scene, inputs, 0.0)?;
+    Ok((settling * frequency).clamp(2.0, 1000.0).ceil() / frequency)
+}
+
+/// Whether the contact opens in steady vibration: after it has risen to the level and was held for as long.
+fn opens(scene: &Scene, inputs: &Inputs) -> Result<bool, RunError> {
+    let mut contact = Simulation::new(scene, inputs, 0.0)?;
     contact.step(inputs, 0.0, 2.0 * scene.excitation.rise_time)?;
     let steady = contact.time();
-    contact.step(inputs, steady, WATCHED / frequency)?;
+    contact.step(inputs, steady, WATCHED / scene.excitation.frequency)?;
     Ok(contact.real(RealOutput::ContactLastOpening) > steady)
 }
 

@@ -69,7 +69,7 @@ impl Stepper<'_> {
         let just_closed =
             |closing: Option<f64>| closing.is_some_and(|closing| (0.0..=shortest).contains(&(target.time - closing)));
         let rubs = state.links[CONTACT].closed && !just_closed(state.links[CONTACT].last_closing);
-        let may_change = rubs && changes <= MOST_CHANGES;
+        let may_change = rubs && (changes <= MOST_CHANGES || !is_shortest);
         let change = may_change.then(|| locator.slip_change()).flatten();
         // What sticks slips before it opens.
         let sticks = change.is_some() && state.slip.phase.sign().is_none();
@@ -197,7 +197,7 @@ impl Stepper<'_> {
             self.progress.changes += 1;
             // Polynomials of a shorter step say which of the two it is; rounding must not let it change to and fro for ever.
             let again = self.progress.changes > 1;
-            // The next one goes on as it is: for no longer than rounding tells the two apart.
+            // The next one of this length goes on as it is: for no longer than rounding tells the two apart.
             let last = self.progress.changes > MOST_CHANGES;
             let most = match (last, again) {
                 (true, _) => self.shortest(),
