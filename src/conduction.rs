@@ -22,8 +22,7 @@ impl Conducting {
     fn of(model: &Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
         let electrical = model.links.get(role?)?.electrical?;
         let contacts = [role, model.roles.parallel.filter(|_| role == Some(CONTACT))];
-        let spots =
-            contacts.map(|contact| contact.map_or(0.0, |index| electrical.spot(motion.link(model, index).force)));
+        let spots = contacts.map(|contact| contact.map_or(0.0, |index| electrical.spot(motion.force(model, index))));
         Some(Self {
             electrical,
             contacts,
@@ -36,7 +35,7 @@ impl Conducting {
     fn rates(&self, model: &Model, motion: &Motion) -> [f64; 2] {
         self.contacts.map(|contact| {
             contact.map_or(0.0, |index| {
-                let force = motion.link(model, index).force;
+                let force = motion.force(model, index);
                 self.electrical.conductance_slope(force) * motion.link_rates(model, index).0
             })
         })
@@ -82,7 +81,7 @@ pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 
             (motion.current / conductance).clamp(-highest, highest)
         }
         RealOutput::ContactTemperature if scene.effects.heating => {
-            let force = motion.link(model, CONTACT).force;
+            let force = motion.force(model, CONTACT);
             electrical.temperature(scene, force, motion.current * circuit.share())
         }
         RealOutput::ContactTemperature => scene.environment.temperature,
@@ -116,7 +115,7 @@ pub(crate) fn rate(model: &Model, motion: &Motion, output: RealOutput) -> f64 {
         }
         RealOutput::ContactTemperature if model.scene.effects.heating => {
             let (share, share_rate) = (circuit.share(), circuit.share_rate(rates));
-            let (force, current) = (motion.link(model, CONTACT).force, motion.current * share);
+            let (force, current) = (motion.force(model, CONTACT), motion.current * share);
             let current_rate = motion.current_rate * share + motion.current * share_rate;
             let (by_force, by_current) = circuit.electrical.temperature_slopes(&model.scene, force, current);
             let force_rate = motion.link_rates(model, CONTACT).0;

@@ -200,8 +200,9 @@ impl Simulation {
         let roles = &model.roles;
         let (state, contact) = (motion.state(), || motion.link(model, CONTACT));
         let at = |role: Option<usize>| role.map_or_else(LinkNow::default, |index| motion.link(model, index));
+        let force = |role: Option<usize>| role.map_or(0.0, |index| motion.force(model, index));
         match output {
-            RealOutput::ContactForce => contact().force,
+            RealOutput::ContactForce => force(Some(CONTACT)),
             RealOutput::ContactElasticForce => motion.elastic_force(model).0,
             RealOutput::ContactConductance
             | RealOutput::ContactResistance
@@ -216,12 +217,12 @@ impl Simulation {
                 Some(extremes) => -extremes.nearest,
                 None => 0.0,
             },
-            RealOutput::ParallelForce => at(roles.parallel).force,
+            RealOutput::ParallelForce => force(roles.parallel),
             RealOutput::ParallelLastOpening => self.event(roles.parallel, |link| link.last_opening),
             RealOutput::ParallelLastClosing => self.event(roles.parallel, |link| link.last_closing),
             RealOutput::ParallelMinimumForce => self.range(roles.parallel).least,
             RealOutput::ParallelMaximumForce => self.range(roles.parallel).greatest,
-            RealOutput::PusherForce => at(roles.pusher).force,
+            RealOutput::PusherForce => force(roles.pusher),
             RealOutput::ArmatureDisplacement => model.preload.armature.place + at(roles.core).approach,
             RealOutput::ArmatureVelocity => at(roles.core).rate,
             RealOutput::ArmatureGap => {
@@ -231,7 +232,7 @@ impl Simulation {
             RealOutput::ArmatureLastRelease => self.event(roles.core, |link| link.last_opening),
             RealOutput::StepMinimumStopForce => self.range(roles.core).least,
             RealOutput::StepMinimumPusherForce => self.range(roles.pusher).least,
-            RealOutput::SecondForce => at(roles.second).force,
+            RealOutput::SecondForce => force(roles.second),
             RealOutput::SecondLastOpening => self.event(roles.second, |link| link.last_opening),
             RealOutput::SecondLastClosing => self.event(roles.second, |link| link.last_closing),
             RealOutput::SecondMinimumForce => self.range(roles.second).least,
@@ -379,7 +380,7 @@ impl Simulation {
         index.is_some_and(|index| {
             let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);
             // At the instant of closing there is no force yet.
-            self.motion.link(&self.model, index).force > 0.0 || closed && !self.model.law().never_opens()
+            self.motion.force(&self.model, index) > 0.0 || closed && !self.model.law().never_opens()
         })
     }
 }

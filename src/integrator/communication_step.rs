@@ -29,8 +29,10 @@ pub(crate) enum Steps<'a> {
         time: f64,
         /// s.
         size: f64,
-        /// What is new in it.
-        news: News,
+        /// Whether such a size is expected again.
+        recurs: bool,
+        /// Whether an input is another one than before.
+        driven: bool,
     },
     /// By one step as long as the error allows, with dense output.
     Own {
@@ -41,15 +43,6 @@ pub(crate) enum Steps<'a> {
         /// The state at its start, to which events are added that happen there.
         start: &'a mut State,
     },
-}
-
-/// What a communication step has that the one before it had not, as if that were to go on.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct News {
-    /// An input that has changed.
-    pub(crate) inputs: bool,
-    /// Another length.
-    pub(crate) length: bool,
 }
 
 /// Advances the state.
@@ -69,7 +62,12 @@ pub(crate) fn advance(
         ..Recorder::default()
     };
     let (grid, driven) = match steps {
-        Steps::Exactly { time, size, news } => {
+        Steps::Exactly {
+            time,
+            size,
+            recurs,
+            driven,
+        } => {
             exact_step::leave_before_rest(model, state, &drive);
             state.time = rests_until(model, state, &drive, time + size).unwrap_or(time);
             let remaining = size - (state.time - time);
@@ -81,12 +79,12 @@ pub(crate) fn advance(
                 return Ok(());
             }
             let grid = Grid {
-                recurs: !(news.inputs && news.length),
+                recurs,
                 ..Grid::over(state.time, remaining)
             };
             // A blow would make more of an error than it is here.
             let never_opened = state.is_closed() && !state.has_switched();
-            (grid, news.inputs && never_opened)
+            (grid, driven && never_opened)
         }
         Steps::Own { until, dense, start } => {
             let size = state.lengths.own();
@@ -178,40 +176,25 @@ fn step_by<const EXTREMES: bool>(
     // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
     let inside = steady && until < motion.end.time;
     let mut extremes = EXTREMES.then(|| motion.extremes_now(model));
-    let own_step = motion.end.lengths.own();
-    // Where the contact opens and closes, or slips and sticks, step ends would not lie on the grid of an exact step.
-    let switches = motion.end.has_switched() || motion.end.slip.last_change.is_some();
-    // One length decides which way to go: two that differ by rounding could choose none of the ways that fit.
-    let remaining = until - motion.end.time;
-    let many = remaining >= MANY_STEPS * own_step;
     if inside {
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, until);
         }
-    } else if steady && (switches || !many && (ahead || size < own_step || size != motion.size)) {
+    } else if steady {
         go_ahead(model, motion, workspace, until, extremes.as_mut())?;
-    } else if steady && ahead {
-        let (time, news) = (motion.end.time, News::default());
-        let size = remaining;
-        let steps = Steps::Exactly { time, size, news };
-        if let Some(extremes) = &mut extremes {
-            motion.add_dense(extremes, model, since, time);
-        }
-        workspace.former.end = motion.end;
-        advance_end(model, motion, workspace, motion.drive, steps, extremes.as_mut())?;
-        motion.end.time = until;
-        motion.start = motion.end;
     } else {
         workspace.former.end = motion.end;
         if ahead {
             go_back(model, motion, workspace)?;
         }
-        let news = News {
-            // One after a time without changes is none that recurs.
-            inputs: !steady && !ahead && motion.size > 0.0,
-            length: size != motion.size,
+        // One after a time without changes is none that recurs.
+        let driven = !ahead && motion.size > 0.0;
+        let steps = Steps::Exactly {
+            time,
+            size,
+            recurs: !driven || size == motion.size,
+            driven,
         };
-        let steps = Steps::Exactly { time, size, news };
         let done = advance_end(model, motion, workspace, drive, steps, extremes.as_mut());
         done.inspect_err(|_| workspace.events.forget_after(since))?;
         (motion.end.displacements, motion.end.time) = (displacements, until);
@@ -314,15 +297,13 @@ fn go_on(
     if size <= 0.0 {
         return Ok(());
     }
-    let news = News::default();
-    advance(
-        model,
-        state,
-        workspace,
-        drive,
-        Steps::Exactly { time, size, news },
-        None,
-    )
+    let steps = Steps::Exactly {
+        time,
+        size,
+        recurs: false,
+        driven: false,
+    };
+    advance(model, state, workspace, drive, steps, None)
 }
 
 /// Takes integration steps of the integrator's own choice until one reaches `time` (s) or beyond. `extremes` covers the

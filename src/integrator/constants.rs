@@ -42,8 +42,8 @@ pub const LEAST_LEAP: f64 = 16.0;
 /// Length that a long step reaches at most, in short ones, 1. Observed. Cost.
 pub const LONGER: f64 = 16.0;
 
-/// Length of a communication step, in steps of the integrator, from which one of them ends with it, 1. Chosen by the
-/// work in the scenes. Cost.
+/// Time to a communication point, in steps of the integrator, from which it is worth looking whether nothing moves until then, and
+/// an exact step goes there, 1. Cost.
 pub const MANY_STEPS: f64 = 4.0;
 
 /// Spacing of floating-point numbers of time, in first steps, beyond which a motion cannot be followed, 1. A tenth of a

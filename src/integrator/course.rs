@@ -4,7 +4,7 @@ use std::array;
 
 use crate::integrator::constants::PIECES;
 use crate::math::nodal::LONG;
-use crate::math::prediction::{Prediction, derivative, value_and_slope, values_and_slopes};
+use crate::math::prediction::{Prediction, derivative, value_and_slope, value_at, values_and_slopes};
 use crate::math::roots;
 use crate::math::simd::{Simd, compiled_for};
 use serde::{Deserialize, Serialize};
@@ -74,7 +74,7 @@ pub(crate) fn turning_points_between(simd: Simd, polynomial: &Prediction, from: 
         // Slopes of one sign that first fall towards zero, then rise, may have passed it twice.
         let dips = (first > 0.0) == (last > 0.0) && first * falls < 0.0 && last * rises > 0.0;
         let least = dips.then(|| roots::between(bend, (a, falls), (b, rises), 1e-9));
-        let middle = least.flatten().map_or((a, first), |y| (y, value_and_slope(&rate, y).0));
+        let middle = least.flatten().map_or((a, first), |y| (y, value_at(&rate, y)));
         pass((a, first), middle);
         pass(middle, (b, last));
     }

@@ -10,7 +10,7 @@ use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::{FORCE_ROUNDING, UNREST};
+use crate::integrator::constants::{FORCE_ROUNDING, MANY_STEPS, UNREST};
 use crate::integrator::dense_output::{DenseLink, DenseOutput};
 use crate::integrator::grid::round_down;
 use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
@@ -58,6 +58,15 @@ pub(crate) fn step_exactly(
     false
 }
 
+/// [`step_exactly`] to an instant (s).
+fn step_until(model: &Model, state: &mut State, workspace: &mut Workspace, drive: &Drive, until: f64) -> bool {
+    let done = step_exactly(model, state, workspace, drive, until - state.time);
+    if done {
+        state.time = until;
+    }
+    done
+}
+
 /// One step of `length` seconds without a start or end of the generator inside; `false`, with the state unchanged, if
 /// the contact may open or be interrupted.
 fn step(model: &Model, state: &mut State, workspace: &mut Workspace, drive: &Drive, length: f64) -> bool {
@@ -92,6 +101,9 @@ pub(crate) fn step_ahead(
     };
     let remaining = until - state.time;
     let mut requested = state.lengths.long;
+    if remaining >= MANY_STEPS * requested {
+        return step_until(model, state, workspace, drive, until);
+    }
     let mut free = [0.0; 2 * MAX_MODES];
     let Some(start) = Start::new(model, state, drive, requested, &mut free) else {
         return false;
@@ -105,11 +117,7 @@ pub(crate) fn step_ahead(
         if length < remaining {
             // The next step tries again, as what is not smooth may decay.
             state.lengths.long = requested.max(2.0 * remaining);
-            if !step_exactly(model, state, workspace, drive, remaining) {
-                return false;
-            }
-            state.time = until;
-            return true;
+            return step_until(model, state, workspace, drive, until);
         }
         let collocation = workspace.long.cache.collocation();
         let propagator = workspace.dense_propagators.get(length, |propagator| {

@@ -3,7 +3,7 @@
 use crate::electrical::ElectricalContact;
 use crate::integrator::course::Places;
 use crate::link::{CONTACT, Link, MAX_LINKS};
-use crate::math::prediction::{Prediction, value_and_slope};
+use crate::math::prediction::{Prediction, value_at};
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +97,7 @@ impl Extremes {
     ) {
         let range = self.of(index);
         for y in turns.between(from, to).chain([to]) {
-            let force = link.force + value_and_slope(polynomial, y).0;
+            let force = link.force + value_at(polynomial, y);
             range.add(link.contact().map_or(force, |law| law.without_pull(force)));
         }
     }
@@ -119,7 +119,7 @@ impl Extremes {
         });
         let conductance = |y: f64| {
             let of_one = |(force, polynomial, _, spot): &(f64, &Prediction, Places, ElectricalContact)| {
-                spot.spot(force + value_and_slope(polynomial, y).0)
+                spot.spot(force + value_at(polynomial, y))
             };
             courses.iter().flatten().map(of_one).sum::<f64>()
         };

@@ -1,8 +1,6 @@
-//! The grid of a communication step. Integration steps are dyadic fractions of it, or free steps of a few rounded
-//! lengths, of which the last may be cut; either way step lengths recur, so that their coefficients can be cached.
-
-/// Part of a cell of the grid below which a step to its end is not worth its price: it goes half a cell further.
-const NEAREST: f64 = 0.3;
+//! The grid of a communication step. Integration steps are dyadic fractions of it; off these, after an event, and where its size is
+//! not expected again, they have a few rounded lengths, and the last one is cut. So step lengths recur, and their coefficients can
+//! be cached.
 
 /// Progress within a communication step.
 #[derive(Clone, Copy, Debug)]
@@ -15,7 +13,7 @@ pub struct Grid {
     pub done: f64,
     /// A single step that may be longer than `size`.
     pub free: bool,
-    /// Whether `size` is expected to recur. If not, steps have the lengths of free ones, and the last one is cut.
+    /// Whether `size` is expected to recur.
     pub recurs: bool,
 }
 
@@ -69,23 +67,16 @@ impl Grid {
     /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the
     /// next discontinuity of the excitation.
     pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
-        if self.free || !self.recurs {
+        let aligned = self.recurs && !self.free;
+        let Some(done) = aligned.then(|| self.grid_point(requested)).flatten() else {
             return self.rounded(requested, time, corner);
-        }
-        let done = if self.done == 0.0 && requested >= self.size {
-            1.0
-        } else {
-            self.grid_point(requested)
         };
         if let Some(corner) = corner.filter(|corner| *corner < self.start + done * self.size) {
             return self.cut(corner - time, corner);
         }
-        let part = done - self.done;
-        // Powers of two have an empty mantissa.
-        let recurring = part.to_bits().trailing_zeros() >= f64::MANTISSA_DIGITS - 1;
         Target {
-            length: part * self.size,
-            recurring,
+            length: (done - self.done) * self.size,
+            recurring: true,
             done,
             time: self.time(done),
         }
@@ -116,7 +107,7 @@ impl Grid {
 
     /// The step of `length` (s) that ends at `time` (s), off the grid.
     pub fn cut(&self, length: f64, time: f64) -> Target {
-        let done = if self.free || !self.recurs && time >= self.end() {
+        let done = if self.free || time >= self.end() {
             1.0
         } else {
             (self.done + length / self.size).min(1.0)
@@ -134,26 +125,18 @@ impl Grid {
         }
     }
 
-    /// The next point of the dyadic grid with cells of at most `requested` seconds, unless it is too near to be worth a
-    /// step. As fraction of the communication step.
-    fn grid_point(&self, requested: f64) -> f64 {
+    /// The next point of the dyadic grid with cells of at most `requested` seconds, as fraction of the communication step; `None` off
+    /// the grid, after an event.
+    fn grid_point(&self, requested: f64) -> Option<f64> {
+        if self.done == 0.0 && requested >= self.size {
+            return Some(1.0);
+        }
         let level = (self.size / requested).log2().ceil().clamp(0.0, 52.0);
         let cell = (-level).exp2();
-        // On the grid: one cell, or a finer one where no cell of this size begins here.
-        let aligned = (0..6)
-            .map(|finer| cell * 0.5_f64.powi(finer))
-            .find(|cell| (self.done / cell).fract() == 0.0);
-        if let Some(cell) = aligned {
-            return (self.done + cell).min(1.0);
-        }
-        // Off the grid, after an event: back to it.
-        let point = ((self.done / cell).floor() + 1.0) * cell;
-        let point = if point - self.done < NEAREST * cell {
-            point + 0.5 * cell
-        } else {
-            point
-        };
-        point.min(1.0)
+        // One cell, or a finer one where no cell of this size begins here.
+        let mut cells = (0..6).map(|finer| cell * 0.5_f64.powi(finer));
+        let aligned = cells.find(|cell| (self.done / cell).fract() == 0.0)?;
+        Some((self.done + aligned).min(1.0))
     }
 
     fn time(&self, done: f64) -> f64 {

@@ -104,8 +104,9 @@
 //! A step may add [`constants::SHARE`] of `solver.tolerance` times the force scale ([`tolerance`]). Its length is multiplied by
 //! `(allowed / estimate)^(1 / (S + 1))` and [`constants::SAFETY`], within bounds. Acceptance discounts the velocity error inherited
 //! from the previous step ([`constants::INHERITED`]): the contact's damper takes it back, and a shorter step would not have less of it.
-//! Step ends lie on a grid: binary fractions of the communication step, or lengths of 1 and 1.5 times powers of two where the
-//! integrator runs ahead; the generator's corners (start, end, crossover) end a step. After a closing the force is smooth in the
+//! Step ends lie on a grid: binary fractions of the communication step where it is integrated to its end, and lengths of 1 and 1.5
+//! times powers of two where the integrator runs ahead, and off that grid after an event; the generator's corners (start, end,
+//! crossover) end a step. After a closing the force is smooth in the
 //! logarithm of the time since: the next step may be longer in the ratio in which that time grows. A step is never longer than a
 //! quarter of the generator's shortest period, nor than `solver.maximumStep`.
 //!
@@ -139,7 +140,7 @@
 //! dense output, the polynomials of its last step ([`communication_step`], [`motion`], [`recorder`]). A long step that will be read
 //! inside must keep the tolerance there too ([`accuracy`]). A short step that cannot ends at the communication point, cut as at an
 //! event. A changed input takes the motion back to the communication point: it is integrated again from the start of the step,
-//! under the former inputs. A communication step much longer than the integrator's steps ends one of them exactly. Inputs act
+//! under the former inputs. With inputs that change in it, a communication step is integrated to its end. Inputs act
 //! linearly in time within a communication step; a jump of their rate changes the dissipative force at once and restarts the step
 //! length.
 //!

@@ -1,10 +1,8 @@
 //! The motion at a communication point, and dense output between integration steps.
 //!
-//! Long communication steps are integrated exactly to their ends. With short ones (a circuit simulator's) or ones of
-//! ever new sizes, and inputs that continue as before, the integrator runs ahead in steps as long as the error allows.
-//! The communication points then lie inside an integration step, and the tip is read from the step's polynomials (dense
-//! output). When an input changes, the step is repeated from its start to the communication point and integration
-//! restarts there.
+//! While inputs continue as before, the integrator runs ahead in steps as long as the error allows. Communication points then lie
+//! inside an integration step, and the tip is read from the step's polynomials (dense output). When an input changes, the step is
+//! repeated from its start to the communication point, and the communication step that begins there is integrated to its end.
 
 use std::fmt;
 
@@ -18,7 +16,7 @@ use crate::integrator::events::log::Event;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::with_contact;
 use crate::link::{CONTACT, Link, MAX_LINKS, Ways};
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::{value_and_slope, value_at};
 use crate::model::Model;
 use crate::state::{LinkState, State};
 use serde::de::{self, SeqAccess, Visitor};
@@ -203,30 +201,33 @@ impl Motion {
         Some((link, state, dense))
     }
 
-    /// A contact at the communication point; nothing of a model that has no such link.
+    /// A link at the communication point; nothing of a model that has no such link.
     pub fn link(&self, model: &Model, index: usize) -> LinkNow {
-        let Some((link, state, dense)) = self.seen(model, index) else {
+        let Some((_, state, dense)) = self.seen(model, index) else {
             return LinkNow::default();
         };
+        let force = self.force(model, index);
+        let (approach, rate) = match dense {
+            Some((dense, y)) => (value_at(&dense.approach, y), value_at(&dense.rate, y)),
+            None => (state.approach, state.rate),
+        };
+        LinkNow { force, approach, rate }
+    }
+
+    /// Its force alone, N.
+    pub fn force(&self, model: &Model, index: usize) -> f64 {
+        let Some((link, state, dense)) = self.seen(model, index) else {
+            return 0.0;
+        };
         let Some((dense, y)) = dense else {
-            return LinkNow {
-                force: state.force,
-                approach: state.approach,
-                rate: state.rate,
-            };
+            return state.force;
         };
-        let at = |values| value_and_slope(values, y).0;
-        let force = link.force + at(&dense.force);
-        let force = match link.contact() {
-            _ if !state.closed => 0.0,
-            Some(law) if !law.never_opens() => force.max(f64::MIN_POSITIVE),
-            _ => force,
-        };
-        LinkNow {
-            force,
-            approach: at(&dense.approach),
-            rate: at(&dense.rate),
+        if !state.closed {
+            return 0.0;
         }
+        let force = link.force + value_at(&dense.force, y);
+        let opens = link.contact().is_some_and(|law| !law.never_opens());
+        if opens { force.max(f64::MIN_POSITIVE) } else { force }
     }
 
     /// Rates of force (N/s) and velocity (m/s2) of a contact at the communication point; at a discontinuity, the limit from the
@@ -283,7 +284,7 @@ impl Motion {
             return (along.force, slip);
         };
         let (closed, slips) = (state.links[CONTACT].closed, slip.phase != Phase::Stick);
-        let at = |values| value_and_slope(values, y).0;
+        let at = |values| value_at(values, y);
         if !closed || slips {
             let start = slip.way;
             slip.way = at(&self.dense.slip.slip);
@@ -380,7 +381,7 @@ impl Motion {
     pub(crate) fn extremes_now(&self, model: &Model) -> Extremes {
         let mut forces = [0.0; MAX_LINKS];
         for (index, force) in forces.iter_mut().enumerate().take(model.links.len()) {
-            *force = self.link(model, index).force;
+            *force = self.force(model, index);
         }
         let second = model.roles.second.and_then(|index| {
             let link = model.links.get(index)?;
@@ -434,7 +435,7 @@ impl Motion {
             if model.roles.second == Some(index) {
                 let turns = turning_points_between(model.simd, &dense.approach, from, to);
                 for y in turns.iter().chain([from, to]) {
-                    extremes.approach(link.approach + value_and_slope(&dense.approach, y).0);
+                    extremes.approach(link.approach + value_at(&dense.approach, y));
                 }
             }
         }

@@ -9,7 +9,7 @@ use crate::integrator::events::interruption::Passages;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::Target;
 use crate::link::LinkLaw;
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::value_at;
 use crate::model::Model;
 use crate::state::State;
 
@@ -99,7 +99,7 @@ impl Recorder<'_> {
                     if before.zip(nodes.rates).any(|(before, now)| before > 0.0 && now <= 0.0) {
                         let polynomial = through(at.approach, &nodes.approaches);
                         for y in turning_points(model.simd, &polynomial).iter() {
-                            highest = highest.max(value_and_slope(&polynomial, y).0);
+                            highest = highest.max(value_at(&polynomial, y));
                         }
                     }
                     extremes.approach(link.approach + highest);

@@ -147,7 +147,7 @@ impl Stepper<'_> {
 
     /// Whether the step ends with the communication step, inside the trial.
     fn is_cut(&self, target: &Target) -> bool {
-        !self.grid.recurs && target.time > self.grid.end()
+        !self.grid.free && target.time > self.grid.end()
     }
 
     /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with the growth factor `growth`.

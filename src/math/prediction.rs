@@ -42,7 +42,14 @@ pub fn value_and_slope(coefficients: &Prediction, y: f64) -> (f64, f64) {
     (value, slope)
 }
 
-/// The same at several places, side by side.
+/// Its value alone.
+pub fn value_at(coefficients: &Prediction, y: f64) -> f64 {
+    let z = centred(y);
+    let terms = coefficients.iter().rev();
+    terms.fold(0.0, |value, coefficient| Separate::mul_add(value, z, *coefficient))
+}
+
+/// Value and derivative at several places, side by side.
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "there is a value for each place")]
 pub fn values_and_slopes<const N: usize, A: Arithmetic>(

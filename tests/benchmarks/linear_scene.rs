@@ -326,7 +326,7 @@ fn one_long_step_is_many_short_ones() {
     }
 }
 
-/// With the cut out of reach the linearised contact is the bonded one, in single steps too.
+/// With the cut out of reach the linearised contact is the bonded one, in no more steps than communication steps.
 #[test]
 fn linearised_out_of_reach_of_the_cut_is_bonded() {
     for damping in DAMPINGS {
@@ -338,7 +338,7 @@ fn linearised_out_of_reach_of_the_cut_is_bonded() {
             for k in 1..=30 {
                 rig.run_to(&Inputs::default(), f64::from(k) * 1.3e-4).unwrap();
             }
-            assert_eq!(rig.state.steps, 30, "{law:?}, {damping:?}");
+            assert!(rig.state.steps <= 30, "{law:?}, {damping:?}");
             rig.state.contact().force
         };
         assert_eq!(

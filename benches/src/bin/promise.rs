@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use clap::Parser;
 use testing::kinds::{self, KINDS};
-use testing::promise::{Judged, compare_all, judge_all};
+use testing::promise::{Judged, Outcome, compare_all, judge_all};
 
 #[derive(Parser)]
 #[command(about = "Judges random relays by the promise of solver.tolerance")]
@@ -22,7 +22,7 @@ struct Arguments {
     /// Number of relays
     #[arg(long, default_value_t = 2_000)]
     count: u64,
-    /// Which relays; those of one kind only are printed, and written to no file
+    /// Which relays; of one kind only those above their tolerance are printed, and nothing is written
     #[arg(long)]
     kind: Option<String>,
     /// Compare references with themselves in communication steps of a quarter, and print those that disagree without a word
@@ -46,6 +46,10 @@ fn main() -> Result<()> {
     if arguments.kind.is_some() {
         let above = judged.iter().filter(|judged| judged.error > judged.tolerance);
         above.for_each(|judged| println!("{judged:?}"));
+        let number = |is: fn(&Judged) -> bool| judged.iter().filter(|judged| is(judged)).count();
+        let run = number(|judged| judged.outcome != Outcome::NotRun);
+        let alarms = number(|judged| judged.outcome == Outcome::Kept && judged.estimate > judged.tolerance);
+        println!("{run} run; of those that keep their tolerance {alarms} are announced as above it");
         return Ok(());
     }
     fs::create_dir_all(&arguments.folder)?;

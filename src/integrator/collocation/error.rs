@@ -286,5 +286,5 @@ fn kinked<const S: usize>(collocation: &Collocation<S>, state: &State, length: f
 /// Practice, 2013, chapters 8 and 19).
 fn analytic<const S: usize>(distance: f64) -> f64 {
     let ellipse = 1.0 + 2.0 * distance + 2.0 * (distance * (distance + 1.0)).sqrt();
-    (1..S).fold(1.0, |product, _| product / ellipse)
+    ellipse.powi(1 - i32::try_from(S).unwrap_or(i32::MAX))
 }

@@ -11,7 +11,7 @@ use crate::integrator::collocation::side_by_side::Loads;
 use crate::integrator::collocation::trial::{LinkEnd, Trial};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::value_at;
 use crate::math::simd::{Arithmetic, Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
@@ -181,7 +181,7 @@ pub(crate) fn shorten<const S: usize>(
     let nodal = |values: &Nodal<S>| rows.map(|row| dot::<S, Separate>(&row, values));
     let with_start = |start: f64, values: &Nodal<S>| {
         let polynomial = collocation.through(model.simd, start, values);
-        nodes.map(|x| value_and_slope(&polynomial, x - 1.0).0)
+        nodes.map(|x| value_at(&polynomial, x - 1.0))
     };
     let links = model.links.iter().zip(&state.links).zip(&mut trial.links);
     for (((link, start), nodes), Instant { d, rate, .. }) in links.zip(ends) {

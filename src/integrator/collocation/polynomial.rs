@@ -8,7 +8,7 @@ use crate::integrator::collocation::shapes::{Row, Shapes, Table, Variable};
 use crate::integrator::constants::{FAR_AHEAD, NEAR, SLOWEST_DECAY};
 use crate::integrator::course::turning_points;
 use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
-use crate::math::prediction::{Prediction, centred, parabola_at_end, value_and_slope};
+use crate::math::prediction::{Prediction, centred, parabola_at_end, value_at};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
 // Computed as the library is built: `build/collocation.rs`.
@@ -89,7 +89,7 @@ impl<const S: usize> Collocation<S> {
         let first = self.places.first().copied().unwrap_or_default();
         let turns = turning_points(Simd::Portable, &polynomial);
         let mut places = turns.iter().map(|y| 1.0 + y).filter(|x| (first..until).contains(x));
-        let dip = places.find(|x| value_and_slope(&polynomial, x - 1.0).0 < 0.0);
+        let dip = places.find(|x| value_at(&polynomial, x - 1.0) < 0.0);
         dip.or(below)
     }
 

@@ -20,17 +20,22 @@ use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::{Arithmetic, LANES, Simd, compiled_for};
 use crate::model::Model;
 
-/// Step lengths whose coefficients are kept, a power of two: those of 32 octaves with and without half of their own, as
-/// free steps have them, from nanoseconds after a blow to seconds. Cost.
-pub const SLOTS: usize = 64;
+/// Step lengths whose coefficients are kept: those of free steps in 32 octaves, from nanoseconds after a blow to seconds, and parts
+/// of communication steps. Powers of two. Cost.
+const FREE: usize = 64;
+const PARTS: usize = 32;
+pub const SLOTS: usize = FREE + PARTS;
 
-/// The slot of a length: dyadic fractions of one, and one and a half times them, occupy neighbouring slots; those of another
-/// start elsewhere (Fibonacci hashing).
+/// The slot of a length. Those of free steps, 1 and 1.5 times powers of two, have neighbouring ones, and so have dyadic fractions of
+/// another length, which start anywhere (Fibonacci hashing).
 fn slot(length: f64) -> usize {
     let bits = length.to_bits();
     let (octave, mantissa) = (bits >> 51, bits << 13);
-    let elsewhere = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - SLOTS.ilog2());
-    usize::try_from(octave + elsewhere).unwrap_or_default() % SLOTS
+    if mantissa == 0 {
+        return usize::try_from(octave).unwrap_or_default() % FREE;
+    }
+    let start = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - PARTS.ilog2());
+    FREE + usize::try_from((octave >> 1) + start).unwrap_or_default() % PARTS
 }
 
 /// All that the coefficients of a length depend on, but for the generator.

@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::{Collocation, SHORT_BY_TIME};
-    use crate::integrator::communication_step::{News, Steps, advance};
+    use crate::integrator::communication_step::{Steps, advance};
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
     use crate::integrator::stepper::{Progress, Stepper};
@@ -191,7 +191,8 @@ mod tests {
         let steps = Steps::Exactly {
             time: 0.0,
             size: 4e-4,
-            news: News::default(),
+            recurs: true,
+            driven: false,
         };
         let mut workspace = Workspace::new(&model);
         advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();

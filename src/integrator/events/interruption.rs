@@ -8,7 +8,7 @@ use crate::integrator::constants::BRIEF;
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::Locator;
 use crate::link::MAX_LINKS;
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::{value_and_slope, value_at};
 use crate::math::roots;
 
 /// Where in a step the forces of the links pass those of interruptions.
@@ -49,7 +49,7 @@ impl<const S: usize> Locator<'_, S> {
             return true;
         }
         let polynomial = collocation.through(model.simd, at_start, &nodes.forces);
-        let value = |y: f64| excess(value_and_slope(&polynomial, y).0);
+        let value = |y: f64| excess(value_at(&polynomial, y));
         let turns = turning_points(model.simd, &polynomial);
         let inaccuracy = self.whole.inaccuracy();
         let is_accurate = inaccuracy <= 1.0;

@@ -17,7 +17,7 @@ use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::ITERATIONS;
 use crate::integrator::workspace::{Budget, Search, work};
 use crate::link::Link;
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::value_at;
 use crate::math::roots;
 use crate::model::Model;
 use crate::state::{LinkState, State};
@@ -102,7 +102,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let rate = collocation.through(model.simd, start.rate, &nodes.rates);
         let on_polynomials = |at: f64| {
             let y = at / length - 1.0;
-            value(value_and_slope(&approach, y).0, value_and_slope(&rate, y).0)
+            value(value_at(&approach, y), value_at(&rate, y))
         };
         let end = (latest, on_polynomials(latest));
         let guess = roots::between(on_polynomials, from, end, 1e-12 * length);

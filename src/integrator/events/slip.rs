@@ -15,7 +15,7 @@ use crate::integrator::course::turning_points;
 use crate::integrator::events::{Cut, Event, Locator, motion_rounding};
 use crate::link::{CONTACT, Link};
 use crate::math::nodal::{dot, scaled};
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::{value_and_slope, value_at};
 use crate::math::roots;
 use crate::math::simd::{Separate, Simd};
 use crate::state::LinkState;
@@ -180,7 +180,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         if let Some(sign) = state.slip.phase.sign() {
             let start = -along_at.approach - state.slip.way;
             let course = collocation.through(model.simd, start, &trial.slip.deflections);
-            let z = value_and_slope(&course, end.at / length - 1.0).0;
+            let z = value_at(&course, end.at / length - 1.0);
             friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
         } else {
             let stick = friction.trial(law, d, -along.d - state.slip.way, -along.rate);
@@ -222,7 +222,7 @@ fn passage<const S: usize>(
         return None;
     }
     let polynomial = collocation.through(simd, start, values);
-    let value = |y: f64| value_and_slope(&polynomial, y).0;
+    let value = |y: f64| value_at(&polynomial, y);
     let mut before = (-1.0, start);
     for y in turning_points(simd, &polynomial).iter().chain([0.0]) {
         let now = (y, value(y));
