@@ -98,8 +98,13 @@ pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: 
         let along = |slip: Phase| {
             let loads = loads(modes, friction, slip)?;
             let [.., most] = FORCES;
-            let stiffest = law.tangent_stiffness(law.indentation(most * usual));
-            if Loop::new(modes, &loads, law.damping, stiffest).is_stable() {
+            let closed = Loop {
+                modes,
+                loads: &loads,
+                contact_damping: law.damping,
+                stiffest: law.tangent_stiffness(law.indentation(most * usual)),
+            };
+            if closed.is_stable() {
                 return None;
             }
             let growing = FORCES.map(|share| {
@@ -137,16 +142,7 @@ struct Loop<'a> {
 /// The response at an angular frequency (1/s), m/N.
 type Response = (f64, Complex<f64>);
 
-impl<'a> Loop<'a> {
-    fn new(modes: &'a [Mode], loads: &'a DVector<f64>, contact_damping: f64, stiffest: f64) -> Self {
-        Self {
-            modes,
-            loads,
-            contact_damping,
-            stiffest,
-        }
-    }
-
+impl Loop<'_> {
     /// Whether it is stable at all stiffnesses up to the greatest. `false` also where that does not show, as without damping,
     /// where the response is real.
     fn is_stable(&self) -> bool {
@@ -161,8 +157,8 @@ impl<'a> Loop<'a> {
         // Below the first the response is that at rest, above the last it falls.
         let at_rest = first.1.re * self.stiffest > -0.99;
         let falls = last.1.norm() * self.stiffest < 1.0;
-        let pairs = samples.iter().zip(samples.iter().skip(1));
-        at_rest && falls && { pairs }.all(|(from, to)| self.keeps_away(*from, *to, HALVINGS))
+        let mut pairs = samples.iter().zip(samples.iter().skip(1));
+        at_rest && falls && pairs.all(|(from, to)| self.keeps_away(*from, *to, HALVINGS))
     }
 
     /// Where the response bends: at and beside the roots of each mode; and ends far below and above them all.
@@ -305,8 +301,13 @@ mod tests {
             let grows = FORCES
                 .iter()
                 .any(|force| fastest(&modes, &loads, &law, force * 0.2).is_some());
-            let stiffest = law.tangent_stiffness(law.indentation(16.0 * 0.2));
-            let is_stable = Loop::new(&modes, &loads, damping, stiffest).is_stable();
+            let closed = Loop {
+                modes: &modes,
+                loads: &loads,
+                contact_damping: damping,
+                stiffest: law.tangent_stiffness(law.indentation(16.0 * 0.2)),
+            };
+            let is_stable = closed.is_stable();
             assert!(!(is_stable && grows), "{case}: {modes:?} {loads} {law:?}");
             stable += u32::from(is_stable);
             calm += u32::from(!grows);
