@@ -44,9 +44,8 @@ const ROUNDING: f64 = 1e-12;
 /// are known with which it never ends (its issues 611 and 764).
 const ITERATIONS: usize = 30;
 
-/// Halvings of the logarithm of frequency between two bends of the response of the loop. Cost: where more are needed the
-/// eigenvalues tell.
-const HALVINGS: u32 = 10;
+/// Pieces of the axis of frequencies that are looked at; where more are needed the eigenvalues tell. Cost.
+const MOST_PIECES: u32 = 3000;
 
 /// Slip in a direction in which it is unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,82 +138,83 @@ struct Loop<'a> {
     stiffest: f64,
 }
 
-/// The response at an angular frequency (1/s), m/N.
-type Response = (f64, Complex<f64>);
+/// The least and the greatest value of something.
+type Range = [f64; 2];
+
+/// Range of a product.
+fn product([a, b]: Range, [c, d]: Range) -> Range {
+    let all = [a * c, a * d, b * c, b * d];
+    [
+        all.into_iter().fold(f64::INFINITY, f64::min),
+        all.into_iter().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+/// Adds a range.
+fn add(sum: &mut Range, range: Range) {
+    for (sum, value) in sum.iter_mut().zip(range) {
+        *sum += value;
+    }
+}
 
 impl Loop<'_> {
-    /// Whether it is stable at all stiffnesses up to the greatest. `false` also where that does not show, as without damping,
-    /// where the response is real.
+    /// Whether it is stable at all stiffnesses up to the greatest. `false` also where that does not show, as with a mode without
+    /// damping, at whose frequency the response is infinite.
     fn is_stable(&self) -> bool {
-        let mut frequencies = self.frequencies();
-        frequencies.retain(|frequency| frequency.is_finite() && *frequency > 0.0);
-        frequencies.sort_unstable_by(f64::total_cmp);
-        frequencies.dedup();
-        let samples: Vec<Response> = frequencies.iter().map(|frequency| self.at(*frequency)).collect();
-        let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
-            return false;
-        };
-        // Below the first the response is that at rest, above the last it falls.
-        let at_rest = first.1.re * self.stiffest > -0.99;
-        let falls = last.1.norm() * self.stiffest < 1.0;
-        let mut pairs = samples.iter().zip(samples.iter().skip(1));
-        at_rest && falls && pairs.all(|(from, to)| self.keeps_away(*from, *to, HALVINGS))
+        let mut left = MOST_PIECES;
+        let fades = self.modes.iter().all(|mode| mode.damping > 0.0);
+        fades && self.keeps_away([0.0, self.far()], &mut left)
     }
 
-    /// Where the response bends: at and beside the roots of each mode; and ends far below and above them all.
-    fn frequencies(&self) -> Vec<f64> {
-        let roots = self.modes.iter().flat_map(|mode| {
-            let (omega, half) = (mode.omega_squared.sqrt(), 0.5 * mode.damping);
-            if half < omega {
-                [omega - half, omega, omega + half]
-            } else {
-                let fast = half + (half * half - mode.omega_squared).sqrt();
-                [mode.omega_squared / fast, omega, fast]
-            }
-        });
-        let roots: Vec<f64> = roots.collect();
-        let (least, most) = roots.iter().fold((f64::INFINITY, 0.0_f64), |(least, most), root| {
-            (if *root > 0.0 { least.min(*root) } else { least }, most.max(*root))
-        });
-        // There it is at most sum |T_j u_j| (1 + beta_c omega) / (3/4 omega^2).
+    /// An angular frequency from which on the response is too small, 1/s: it is at most
+    /// `sum |T_j u_j| (1 + beta_c omega) / (3/4 omega^2)` above twice the highest of the modes.
+    fn far(&self) -> f64 {
+        let most = self.modes.iter().map(|mode| mode.omega_squared).fold(0.0, f64::max);
         let pairs = self.modes.iter().zip(self.loads);
         let gain = self.stiffest * pairs.map(|(mode, load)| (mode.tip * load).abs()).sum::<f64>() / 0.75;
-        let far = (2.0 * most)
+        (2.0 * most.sqrt())
             .max(2.0 * gain * self.contact_damping)
-            .max((2.0 * gain).sqrt());
-        roots.into_iter().chain([1e-3 * least, far]).collect()
+            .max((2.0 * gain).sqrt())
     }
 
-    fn at(&self, frequency: f64) -> Response {
-        let square = frequency * frequency;
-        let modes = self.modes.iter().zip(self.loads).map(|(mode, load)| {
-            let below = Complex::new(mode.omega_squared - square, mode.damping * frequency);
-            below.conj() * (mode.tip * load / below.norm_sqr())
-        });
-        let damped = Complex::new(1.0, self.contact_damping * frequency);
-        (frequency, damped * modes.sum::<Complex<f64>>())
-    }
-
-    /// Whether the response keeps away from the numbers that it must not reach between two frequencies; `false` also where that
-    /// does not show after so many halvings. A piece that lies far from them, for its length, or on one side without much change
-    /// has no room for a crossing, as all bends lie at its ends.
-    fn keeps_away(&self, from: Response, to: Response, halvings: u32) -> bool {
-        let middle = self.at((from.0 * to.0).sqrt());
-        let is_clear = |(_, a): Response, (_, b): Response| {
-            let (least, most) = (a.im.abs().min(b.im.abs()), a.im.abs().max(b.im.abs()));
-            let beside = (a.im > 0.0) == (b.im > 0.0) && most < 2.0 * least;
-            beside || (a - b).norm() < self.distance(a).min(self.distance(b))
-        };
-        if is_clear(from, middle) && is_clear(middle, to) {
+    /// Whether the response keeps away from the numbers that it must not reach at these frequencies (1/s); `false` also where that
+    /// does not show in so many pieces as are `left`.
+    fn keeps_away(&self, frequencies: Range, left: &mut u32) -> bool {
+        if *left == 0 {
+            return false;
+        }
+        *left -= 1;
+        let ([real, _], [least, greatest]) = self.within(frequencies);
+        if real * self.stiffest > -1.0 || least > 0.0 || greatest < 0.0 {
             return true;
         }
-        halvings > 0 && self.keeps_away(from, middle, halvings - 1) && self.keeps_away(middle, to, halvings - 1)
+        let [from, to] = frequencies;
+        let middle = if from > 0.0 { (from * to).sqrt() } else { 1e-3 * to };
+        let is_inside = from < middle && middle < to;
+        is_inside && self.keeps_away([from, middle], left) && self.keeps_away([middle, to], left)
     }
 
-    /// Distance of a response from those numbers, m/N.
-    fn distance(&self, response: Complex<f64>) -> f64 {
-        let beyond = (response.re + 1.0 / self.stiffest).max(0.0);
-        beyond.hypot(response.im)
+    /// Real and imaginary part of the response at these frequencies (1/s), m/N: bounds of them, by those of each mode.
+    fn within(&self, [from, to]: Range) -> (Range, Range) {
+        let (mut real, mut imaginary) = ([0.0; 2], [0.0; 2]);
+        let beta = self.contact_damping;
+        let squares = [from * from, to * to];
+        for (mode, load) in self.modes.iter().zip(self.loads) {
+            let (stiffness, damping) = (mode.omega_squared, mode.damping);
+            // Over |omega_j^2 - omega^2 + i c_j omega|^2, a parabola in omega^2.
+            let magnitude = |square: f64| (stiffness - square).powi(2) + damping * damping * square;
+            let ends = squares.map(magnitude);
+            let lowest = magnitude((stiffness - 0.5 * damping * damping).clamp(squares[0], squares[1]));
+            let inverse = [1.0 / ends[0].max(ends[1]), 1.0 / lowest];
+            let scale = mode.tip * load;
+            let part = squares.map(|square| stiffness + (beta * damping - 1.0) * square);
+            let part = product([part[0].min(part[1]), part[0].max(part[1])], inverse);
+            add(&mut real, product(part, [scale; 2]));
+            let rate = [squares[1], squares[0]].map(|square| beta * (stiffness - square) - damping);
+            let part = product(product(rate, [from, to]), inverse);
+            add(&mut imaginary, product(part, [scale; 2]));
+        }
+        (real, imaginary)
     }
 }
 
@@ -250,21 +250,12 @@ fn fastest(modes: &[Mode], loads: &DVector<f64>, law: &Power, force: f64) -> Opt
 mod tests {
     use super::*;
     use crate::contact::power::HERTZ;
-
-    /// Numbers from 0 to 1 that look random.
-    fn numbers() -> impl FnMut() -> f64 {
-        let mut state = 1_u64;
-        move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        }
-    }
+    use crate::excitation::random::SplitMix64;
 
     #[test]
     fn slip_that_nyquist_calls_stable_has_no_eigenvalue_that_grows() {
-        let mut random = numbers();
+        let mut generator = SplitMix64(1);
+        let mut random = || generator.next_part();
         let (mut stable, mut calm) = (0, 0);
         for case in 0..3000_usize {
             let count = 1 + case % 12;
@@ -275,7 +266,11 @@ mod tests {
                     omega *= 1.01 + 2.0 * random() * random();
                     Mode {
                         omega_squared: omega * omega,
-                        damping: by_mass + damped * omega * omega * 1e-3,
+                        damping: if random() < 0.02 {
+                            0.0
+                        } else {
+                            by_mass + damped * omega * omega * 1e-3
+                        },
                         tip: 20.0 * (random() - 0.5),
                         ..Mode::default()
                     }
@@ -313,7 +308,6 @@ mod tests {
             calm += u32::from(!grows);
         }
         // Most of what is stable shows.
-        println!("{stable} of {calm} stable ones");
-        assert!(stable > calm / 3 && calm < 2500, "{stable} of {calm}");
+        assert!(stable > calm / 2 && calm < 2500, "{stable} of {calm}");
     }
 }

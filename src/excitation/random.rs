@@ -292,7 +292,7 @@ fn unit<A: Arithmetic>(turns: f64) -> (f64, f64) {
 
 /// SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014): the same numbers on every platform.
 #[derive(Clone, Copy, Debug)]
-struct SplitMix64(u64);
+pub(crate) struct SplitMix64(pub(crate) u64);
 
 impl SplitMix64 {
     fn next(&mut self) -> u64 {
@@ -304,7 +304,7 @@ impl SplitMix64 {
     }
 
     /// A number in [0, 1).
-    fn next_part(&mut self) -> f64 {
+    pub(crate) fn next_part(&mut self) -> f64 {
         (self.next() >> 11) as f64 * (-53.0_f64).exp2()
     }
 }
