@@ -164,13 +164,13 @@ fn what_jolts_do_beyond_the_modes_is_not_silent() {
 /// Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant.
 #[test]
 fn what_flights_make_of_the_errors_of_blows_is_not_silent() {
-    above_but_told(kinds::any, &[10_510, 10_623, 12_630]);
+    above_but_told(kinds::any, &[10_284, 10_510, 10_623, 12_630]);
 }
 
 /// In slip that is unstable errors grow with its vibration, far faster than by blows, and in a contact that never opens, too.
 #[test]
 fn what_unstable_slip_makes_of_errors_is_not_silent() {
-    above_but_told(kinds::friction, &[40_070, 40_330, 40_508]);
+    above_but_told(kinds::friction, &[40_070, 40_317, 40_330, 40_508]);
 }
 
 fn above_but_told(draw: fn(u64) -> Relay, numbers: &[u64]) {

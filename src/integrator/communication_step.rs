@@ -195,8 +195,11 @@ fn step_by<const EXTREMES: bool>(
             recurs: !driven || size == motion.size,
             driven,
         };
-        let done = advance_end(model, motion, workspace, drive, steps, extremes.as_mut());
-        done.inspect_err(|_| workspace.events.forget_after(since))?;
+        let done = advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut());
+        done.inspect_err(|_| {
+            motion.end = workspace.former.end;
+            workspace.events.forget_after(since);
+        })?;
         (motion.end.displacements, motion.end.time) = (displacements, until);
         motion.start = motion.end;
         motion.drive = drive;
@@ -240,19 +243,6 @@ fn go_back(model: &Model, motion: &mut Motion, workspace: &mut Workspace) -> Res
     done.inspect_err(|_| motion.end = workspace.former.end)?;
     workspace.events.forget_after(until);
     Ok(())
-}
-
-/// [`advance`] for the end of a motion, which on an error is again that kept in the workspace.
-fn advance_end(
-    model: &Model,
-    motion: &mut Motion,
-    workspace: &mut Workspace,
-    drive: Drive,
-    steps: Steps,
-    extremes: Option<&mut Extremes>,
-) -> Result<(), StepError> {
-    let done = advance(model, &mut motion.end, workspace, drive, steps, extremes);
-    done.inspect_err(|_| motion.end = workspace.former.end)
 }
 
 /// Displacements of the inputs since the preload after a communication step of `size` seconds from `time` (s), m.

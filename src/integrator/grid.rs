@@ -13,7 +13,7 @@ pub struct Grid {
     pub done: f64,
     /// A single step that may be longer than `size`.
     pub free: bool,
-    /// Whether `size` is expected to recur.
+    /// Whether `size` is expected to recur, so that its fractions do.
     pub recurs: bool,
 }
 
@@ -46,6 +46,7 @@ impl Grid {
     pub fn free(start: f64, size: f64) -> Self {
         Self {
             free: true,
+            recurs: false,
             ..Self::over(start, size)
         }
     }
@@ -67,8 +68,7 @@ impl Grid {
     /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the
     /// next discontinuity of the excitation.
     pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {
-        let aligned = self.recurs && !self.free;
-        let Some(done) = aligned.then(|| self.grid_point(requested)).flatten() else {
+        let Some(done) = self.recurs.then(|| self.grid_point(requested)).flatten() else {
             return self.rounded(requested, time, corner);
         };
         if let Some(corner) = corner.filter(|corner| *corner < self.start + done * self.size) {
@@ -163,6 +163,23 @@ fn round_up(length: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn after_an_event_anywhere_steps_have_lengths_that_recur() {
+        for k in 1..1000 {
+            let grid = Grid {
+                done: f64::from(k) / 1000.0,
+                ..Grid::over(0.5, 1e-5)
+            };
+            let target = grid.target(1e-7 * f64::from(k % 90 + 1), grid.time(grid.done), None);
+            let part = target.done - grid.done;
+            let fraction = part.log2().fract() == 0.0 && target.length == part * grid.size;
+            assert!(
+                target.recurring && (fraction || target.length == round_down(target.length)),
+                "{k}: {target:?}"
+            );
+        }
+    }
 
     #[test]
     fn steps_of_a_length_that_does_not_recur_have_lengths_that_do() {

@@ -339,7 +339,7 @@ fn linearised_out_of_reach_of_the_cut_is_bonded() {
                 rig.run_to(&Inputs::default(), f64::from(k) * 1.3e-4).unwrap();
             }
             assert!(rig.state.steps <= 30, "{law:?}, {damping:?}");
-            rig.state.contact().force
+            (rig.state.steps, rig.state.contact().force)
         };
         assert_eq!(
             run(ContactLawKind::Bonded),

@@ -20,11 +20,14 @@ use crate::math::nodal::{Nodal, add, scaled};
 use crate::math::simd::{Arithmetic, LANES, Simd, compiled_for};
 use crate::model::Model;
 
-/// Step lengths whose coefficients are kept: those of free steps in 32 octaves, from nanoseconds after a blow to seconds, and parts
-/// of communication steps. Powers of two. Cost.
+/// Lengths of free steps whose coefficients are kept, a power of two: of 32 octaves, from nanoseconds after a blow to seconds. Cost.
 const FREE: usize = 64;
+
+/// The same of fractions of communication steps. Cost.
 const PARTS: usize = 32;
-pub const SLOTS: usize = FREE + PARTS;
+
+/// All of them.
+const SLOTS: usize = FREE + PARTS;
 
 /// The slot of a length. Those of free steps, 1 and 1.5 times powers of two, have neighbouring ones, and so have dyadic fractions of
 /// another length, which start anywhere (Fibonacci hashing).
@@ -370,4 +373,25 @@ fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shape
         right.iter_mut().skip(j).take(1).for_each(|entry| *entry = scale);
     }
     solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    /// Lengths that share a slot are computed anew in turn, which changes no result and is seen nowhere else.
+    #[test]
+    fn lengths_that_alternate_have_slots_of_their_own() {
+        let octaves = |count: i32| (-40..count - 40).map(|octave| f64::from(octave).exp2());
+        let free = octaves(32).flat_map(|length| [length, 1.5 * length].map(slot));
+        let free: BTreeSet<usize> = free.collect();
+        assert_eq!(free.len(), FREE);
+        for k in 0..1000 {
+            let size = 1.0 + (0.3 + f64::from(k)) / 1000.7;
+            let parts: BTreeSet<usize> = octaves(32).map(|octave| slot(size * octave)).collect();
+            assert!(parts.len() == PARTS && parts.is_disjoint(&free), "{size}");
+        }
+    }
 }
