@@ -11,8 +11,8 @@ use testing::relays::{Course, Relay, after};
 use testing::scenes::{accelerated, at_rest, largest_difference, shaken, supported, tip_stiffness};
 use testing::{kinds, parts};
 
-/// Relays judged.
-const COUNT: u64 = 60;
+/// Relays judged of each kind.
+const COUNT: u64 = 40;
 
 /// Tolerance of a reference over that of its relay: at the tightest one it is the same to a thousandth of the tolerance, but a few
 /// relays take a hundred times as long.

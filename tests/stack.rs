@@ -41,12 +41,10 @@ struct Choices {
     axial_force: i32,
     beside: Beside,
     spring: &'static str,
-    /// Energy, extremes and interruptions.
-    watched: bool,
     tolerance: f64,
 }
 
-/// All that can be combined, with tolerances in turn.
+/// All that can be combined, with energy, extremes and interruptions, which take more, and with tolerances in turn.
 fn all() -> impl Iterator<Item = Choices> {
     let excitations = ExcitationKind::CHOICES.iter();
     let laws = || ContactLawKind::CHOICES.iter();
@@ -55,14 +53,13 @@ fn all() -> impl Iterator<Item = Choices> {
     let springs = ["", "tapered-cube.toml", MODES];
     let rest = move || {
         let springs = move |beside| springs.into_iter().map(move |spring| (beside, spring));
-        let pairs = beside.into_iter().flat_map(springs);
-        pairs.flat_map(|(beside, spring)| [false, true].map(|watched| (beside, spring, watched)))
+        beside.into_iter().flat_map(springs)
     };
     let forces = move |law| axial_forces().flat_map(move |force| rest().map(move |rest| (law, force, rest)));
     let all = excitations.flat_map(move |&(_, excitation)| {
         laws()
             .flat_map(forces)
-            .filter_map(move |(law, axial_force, (beside, spring, watched))| {
+            .filter_map(move |(law, axial_force, (beside, spring))| {
                 let linear = matches!(law.0, "Linearised" | "Bonded");
                 let refused = linear && beside != Beside::Nothing
                     || axial_force.0 == "FromDeflection" && beside == Beside::Friction
@@ -73,7 +70,6 @@ fn all() -> impl Iterator<Item = Choices> {
                     axial_force: axial_force.1,
                     beside,
                     spring,
-                    watched,
                     tolerance: 0.0,
                 })
             })
@@ -99,7 +95,7 @@ fn begin(contact: &Instance, choices: &Choices) {
         set(contact.set_integer(name, value));
     }
     for name in ["effects.energy", "effects.extremes", "effects.chatter"] {
-        set(contact.set_boolean(name, choices.watched));
+        set(contact.set_boolean(name, true));
     }
     set(contact.set_boolean("effects.secondContact", choices.beside == Beside::SecondContact));
     let names = [

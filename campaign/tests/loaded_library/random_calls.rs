@@ -6,7 +6,7 @@ use campaign::api::LIBRARY;
 use campaign::random::campaign;
 
 /// Number of calls, unless the environment variable CAMPAIGN_CALLS is set.
-const CALLS: u64 = 200_000;
+const CALLS: u64 = 100_000;
 
 #[test]
 fn random_calls_get_no_wrong_answer() {
