@@ -44,8 +44,11 @@ def places(table: Any, *above: Any) -> Iterator[tuple[Any, ...]]:  # noqa: ANN40
 
 
 def wrong(content: dict[str, Any]) -> Iterator[tuple[dict[str, Any], tuple[Any, ...], bool]]:
-    """Give the contents of a file with one entry changed each, where, and whether it has to be refused."""
-    for place in places(content):
+    """Give the contents of a file with one entry changed each, where, and whether it has to be refused.
+
+    A number becomes three of the values that it never has, in turn.
+    """
+    for count, place in enumerate(places(content)):
         key, *_ = reversed(place)
 
         def changed(act: Callable[[Any, Any], object], at: tuple[Any, ...] = place) -> dict[str, Any]:
@@ -66,8 +69,8 @@ def wrong(content: dict[str, Any]) -> Iterator[tuple[dict[str, Any], tuple[Any, 
             yield changed(lambda table, key: table.__setitem__(f"{key}k", table.pop(key))), place[:-1], True
             yield changed(lambda table, key: table.__setitem__(f"{key}k", table[key])), place[:-1], True
         if isinstance(value, float | int) and not isinstance(value, bool):
-            for each in NEVER:
-                yield changed(put(each)), place, True
+            for number in range(3 * count, 3 * count + 3):
+                yield changed(put(NEVER[number % len(NEVER)])), place, True
             for each in SOMETIMES:
                 yield changed(put(each)), place, False
         elif key not in TEXT:
