@@ -164,7 +164,7 @@ fn what_jolts_do_beyond_the_modes_is_not_silent() {
 /// Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant.
 #[test]
 fn what_flights_make_of_the_errors_of_blows_is_not_silent() {
-    above_but_told(kinds::any, &[10_284, 10_510, 10_623, 12_630]);
+    above_but_told(kinds::any, &[10_731, 10_795, 12_630]);
 }
 
 /// In slip that is unstable errors grow with its vibration, far faster than by blows, and in a contact that never opens, too.
@@ -210,6 +210,16 @@ fn references_do_not_depend_on_where_communication_steps_end() {
     }
     for compared in compare_all(33_000, 40, kinds::any) {
         assert!(!compared.is_silent(), "{compared:?}");
+    }
+}
+
+/// No shorter step reduces rounding. The first closes after an input has moved it over its gap: its indentation is the small difference of
+/// that way and the gap, while the modes are still at rest. In the second the free motion of many modes is rounded more than their sum.
+#[test]
+fn steps_at_the_tightest_tolerance_do_not_stay_short() {
+    for number in [10_079, 10_454] {
+        let (_, failure) = kinds::any(number).run(|scene| tighten(scene, 0.0, 0.0)).unwrap();
+        assert_eq!(failure, None, "{number}");
     }
 }
 

@@ -87,8 +87,14 @@ pub const FORCE_ROUNDING: f64 = 1e-13;
 /// short ones are not thought to do as well. Cost.
 pub const ROUNDED: f64 = 1e-7;
 
-/// Roundings in a sum over the modes, 1. Chosen. Pinned: × 1e12, `tests/calibration.rs`.
-pub const SUM_ROUNDINGS: f64 = 4.0;
+/// Rounding of a motion, relative to the sums over the modes and the ways of the inputs that it is made of, 1. Four roundings.
+/// Pinned: × 1e8, `tests/promise.rs`; in Newton's method 0 only adds rejected steps.
+pub const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The same of the free motion over a step, 1: its coefficients cancel where a root fades within the step, so that the first forces
+/// differ from the one at the start by this in steps of any length. Twice the bound of `responses_agree_with_quadrature_in_every_regime`.
+/// Pinned: ÷ 20, `steps_at_the_tightest_tolerance_do_not_stay_short`.
+pub const FREE_ROUNDING: f64 = 2e-14;
 
 // Newton's method.
 
@@ -101,10 +107,6 @@ pub const ITERATIONS: u64 = 12;
 
 /// Largest ratio of a residual to the one before it with which the Jacobian of a contact that sticks still serves, 1. Cost.
 pub const STALE: f64 = 0.03;
-
-/// Rounding of the motion at the nodes, relative to what it would be without contact force, 1. Four roundings.
-/// Pinned: × 1e8, `tests/promise.rs`; 0 only adds rejected steps.
-pub const MOTION_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Pivot below which rows are exchanged, 1. An elimination multiplies rounding by its inverse. Pinned: 0,
 /// `a_small_pivot_costs_no_digits`.

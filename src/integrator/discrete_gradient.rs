@@ -9,7 +9,7 @@
 //! method.
 
 use crate::error::{StepError, StepErrorCause};
-use crate::integrator::collocation::error::sum_rounding;
+use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::events::Event;
@@ -75,7 +75,7 @@ impl Stepper<'_> {
             // What its law gives between both ends.
             let (nodes, at) = trial.links.get(index).zip(state.links.get(index))?;
             let (moved, mean) = (nodes.end.approach - at.approach, 0.5 * (at.rate + nodes.end.rate));
-            let (rounding, _) = sum_rounding(model, link, state);
+            let (rounding, _) = motion_rounding(model, (link, at), state);
             // Of a step of femtoseconds a contact with much damping would make a force of that rounding.
             let speed = if (moved - mean * target.length).abs() <= rounding {
                 mean

@@ -3,10 +3,10 @@
 use std::array;
 
 use crate::error::StepError;
-use crate::integrator::collocation::error::is_rounding;
+use crate::integrator::collocation::error::of_rounding;
 use crate::integrator::collocation::part::shorten;
 use crate::integrator::collocation::trial::{LinkNodes, Trial};
-use crate::integrator::constants::{INHERITED, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK, SAFETY};
+use crate::integrator::constants::{INHERITED, LEAST_SHRINK, MOST_CHANGES, MOST_SHRINK, MOTION_ROUNDING, SAFETY};
 use crate::integrator::events::{Cut, Event};
 use crate::integrator::grid::Target;
 use crate::integrator::step_length::StepOutcome;
@@ -95,8 +95,8 @@ impl Stepper<'_> {
         } else {
             (trial.inner_error.total, model.tolerance.step)
         };
-        let fits =
-            || error <= allowed.max(trial.rounding) || is_shortest || is_rounding::<S>(model, state, trial, error);
+        let rounding = || of_rounding::<S>(model, state, trial, MOTION_ROUNDING);
+        let fits = || error <= allowed.max(trial.rounding) || is_shortest || error <= rounding();
         if (event || read.is_some()) && !fits() {
             return Err(Shorter {
                 error,

@@ -2,12 +2,14 @@
 
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
-use crate::integrator::collocation::error::is_rounding;
+use crate::integrator::collocation::error::of_rounding;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::commit::commit;
-use crate::integrator::constants::{AFTER_BLOW, DRIVEN, INHERITED, ITERATIONS, NEAR_BLOW, ROUNDED};
+use crate::integrator::constants::{
+    AFTER_BLOW, DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MOTION_ROUNDING, NEAR_BLOW, ROUNDED,
+};
 use crate::integrator::energy::{balance, conservation};
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::events::{Event, Locator};
@@ -126,10 +128,18 @@ impl Stepper<'_> {
         });
         let fails = ratio > 1.0 && (closed || inside < 1.0);
         // What does not shrink with the step keeps one that is far too short from growing to the next length of the grid.
-        let stays = closed && ratio == inside && ratio <= 1.0 && growth::<S>(ratio) < 2.0;
-        let error = if stays { trial.start_defect } else { trial.error.total };
-        let rounding = (fails || stays) && is_rounding::<S>(model, self.state, trial, error);
-        if rounding { [ROUNDED; 2] } else { [ratio, own] }
+        let of_inside = closed && ratio == inside;
+        let stays = of_inside && ratio <= 1.0 && growth::<S>(ratio) < 2.0;
+        let (error, rounding) = if of_inside {
+            (inside * model.tolerance.force, FREE_ROUNDING)
+        } else {
+            (trial.error.total, MOTION_ROUNDING)
+        };
+        if (fails || stays) && error <= of_rounding::<S>(model, self.state, trial, rounding) {
+            [ROUNDED; 2]
+        } else {
+            [ratio, own]
+        }
     }
 
     /// A trial of `length` seconds, to look at.

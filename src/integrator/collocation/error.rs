@@ -11,12 +11,12 @@ use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknown}
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
-use crate::integrator::constants::{FORCE_ROUNDING, KINKED, SUM_ROUNDINGS};
+use crate::integrator::constants::{FORCE_ROUNDING, KINKED, MOTION_ROUNDING};
 use crate::link::{Link, LinkLaw, MAX_LINKS};
 use crate::math::nodal::{Nodal, dot, end, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
-use crate::state::State;
+use crate::state::{LinkState, State};
 
 /// What the polynomials of the forces miss at the start of a step, link by link, N.
 #[derive(Clone, Copy, Debug, Default)]
@@ -240,11 +240,11 @@ pub(super) fn estimate_in_flight<const S: usize>(
     (trial.start_defect, trial.next_terms) = (0.0, 0.0);
 }
 
-/// Whether the error (N) of a trial is explained by rounding of the sums over the modes: after an impact the modal velocities
-/// are large and their sum at the tip is small.
-pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>, error: f64) -> bool {
-    let of_links = model.links.iter().zip(&trial.links).map(|(link, nodes)| {
-        let (displacement, velocity) = sum_rounding(model, link, state);
+/// Error that rounding of the motion of the links, relative to all that it is made of, makes of the nodal forces of a trial, N.
+pub(crate) fn of_rounding<const S: usize>(model: &Model, state: &State, trial: &Trial<S>, rounding: f64) -> f64 {
+    let links = model.links.iter().zip(&state.links).zip(&trial.links);
+    let of_links = links.map(|(link, nodes)| {
+        let (displacement, velocity) = magnitude(model, link, state);
         let Tangent {
             stiffness,
             damping,
@@ -254,20 +254,27 @@ pub(crate) fn is_rounding<const S: usize>(model: &Model, state: &State, trial: &
         let reaction = 1.0 + gain / (S * S) as f64;
         (stiffness.abs() * displacement + damping * velocity) / reaction
     });
-    error <= of_links.sum()
+    rounding * of_links.sum::<f64>()
 }
 
-/// Rounding of the displacement (m) and velocity (m/s) of the port of a link, as sums over the modes.
-pub(crate) fn sum_rounding(model: &Model, link: &Link, state: &State) -> (f64, f64) {
-    let (mut displacement, mut velocity) = (0.0, 0.0);
+/// Rounding of the approach (m) of a link and of its rate (m/s).
+pub(crate) fn motion_rounding(model: &Model, link: (&Link, &LinkState), state: &State) -> (f64, f64) {
+    let (displacement, velocity) = magnitude(model, link, state);
+    (MOTION_ROUNDING * displacement, MOTION_ROUNDING * velocity)
+}
+
+/// Magnitude of all that the approach (m) of a link and its rate (m/s) are made of. Of the modes: after an impact their velocities are
+/// large and their sum at the tip is small. Of the sum itself: a contact that an input has moved a long way closes with an indentation
+/// that is the small difference of that way and the gap.
+fn magnitude(model: &Model, (link, at): (&Link, &LinkState), state: &State) -> (f64, f64) {
+    let (mut displacement, mut velocity) = (at.approach.abs(), at.rate.abs());
     if let Some(port) = model.ports.get(link.port) {
         for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
             displacement += (factor * at.q).abs();
             velocity += (factor * at.v).abs();
         }
     }
-    let rounding = SUM_ROUNDINGS * f64::EPSILON;
-    (rounding * displacement, rounding * velocity)
+    (displacement, velocity)
 }
 
 /// Error of slow modes, N, that a defect (N) of the force at the start of a step of `length` seconds makes near a kink, where

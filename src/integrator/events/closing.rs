@@ -12,7 +12,7 @@ use crate::contact::law::Law;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::{DISTANT, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
 use crate::integrator::events::cubic::Cubic;
-use crate::integrator::events::{Cut, Event, Locator, motion_rounding};
+use crate::integrator::events::{Cut, Event, Locator, engagement_rounding};
 use crate::link::Link;
 use crate::math::nodal::LONG;
 use crate::math::roots;
@@ -144,7 +144,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let left = link.engagement(start.approach, start.rate).max(0.0);
         // Without its force the spring moves away from where that held it.
         let released = f64::EPSILON * model.preload.deflection.abs();
-        left + released + motion_rounding(model, link, state)
+        left + released + engagement_rounding(model, (link, start), state)
     }
 
     /// Whether the engagement rises throughout between an open and a closed sample, whose cubic is wrong by `error` (m), so that it
@@ -226,7 +226,8 @@ impl<'a, const S: usize> Locator<'a, S> {
         // step after it is soon enough.
         let risen = sought.engagement(&cubic.b) - sought.engagement(&cubic.a);
         let soon = 4.0 * self.resolution * risen / cubic.length();
-        let aim = motion_rounding(self.whole.model, sought.link, self.whole.state).max(soon);
+        let Whole { model, state, .. } = self.whole;
+        let aim = engagement_rounding(model, (sought.link, sought.start), state).max(soon);
         for iteration in 0..2 * HALVINGS {
             let Cubic { a, b } = cubic;
             // A flight starts at the opening itself, where rounding may give a positive engagement.

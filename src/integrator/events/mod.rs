@@ -12,7 +12,7 @@ pub mod swings;
 
 use crate::contact::friction::Phase;
 use crate::contact::law::Law;
-use crate::integrator::collocation::error::sum_rounding;
+use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::ITERATIONS;
 use crate::integrator::workspace::{Budget, Search, work};
@@ -162,17 +162,18 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 
     /// Engagement that counts as zero where a contact opens, m.
-    fn located(&self, link: &Link) -> f64 {
+    fn located(&self, link: (&Link, &LinkState)) -> f64 {
         let Whole { model, state, .. } = self.whole;
         let stiffness = link
+            .0
             .contact()
             .map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
-        (self.whole.model.tolerance.located / stiffness).max(motion_rounding(model, link, state))
+        (self.whole.model.tolerance.located / stiffness).max(engagement_rounding(model, link, state))
     }
 }
 
-/// Rounding of the engagement of a contact by the sums over the modes, m.
-pub(crate) fn motion_rounding(model: &Model, link: &Link, state: &State) -> f64 {
-    let (displacement, velocity) = sum_rounding(model, link, state);
-    displacement + link.contact().map_or(0.0, Law::by_rate) * velocity
+/// Rounding of the engagement of a contact, m.
+pub(crate) fn engagement_rounding(model: &Model, link: (&Link, &LinkState), state: &State) -> f64 {
+    let (displacement, velocity) = motion_rounding(model, link, state);
+    displacement + link.0.contact().map_or(0.0, Law::by_rate) * velocity
 }

@@ -14,7 +14,7 @@ impl<const S: usize> Locator<'_, S> {
         let engagement = |d, rate| link.engagement(d, rate);
         // Closed at the start; just after first touch rounding may give a negative engagement.
         let start = engagement(at.approach, at.rate).max(f64::MIN_POSITIVE);
-        let rounding = self.located(link);
+        let rounding = self.located((link, at));
         let end = self.instant(index, engagement, (0.0, start), latest, rounding);
         // Else the polynomial dips below zero, the force does not: the next step starts here, where it is lowest.
         let opens = end.at < latest || engagement(end.d, end.rate) <= rounding;

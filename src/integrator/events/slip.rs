@@ -7,12 +7,12 @@
 use crate::contact::friction::{Friction, Phase};
 use crate::contact::law::Law;
 use crate::contact::power::Power;
-use crate::integrator::collocation::error::sum_rounding;
+use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::constants::SUM_ROUNDINGS;
+use crate::integrator::constants::MOTION_ROUNDING;
 use crate::integrator::course::turning_points;
-use crate::integrator::events::{Cut, Event, Locator, motion_rounding};
+use crate::integrator::events::{Cut, Event, Locator, engagement_rounding};
 use crate::link::{CONTACT, Link};
 use crate::math::nodal::{dot, scaled};
 use crate::math::prediction::{value_and_slope, value_at};
@@ -189,12 +189,12 @@ impl<'a, const S: usize> Locator<'a, S> {
         }
     }
 
-    /// Rounding of the trial force and of the limit by the sums over the modes, N.
+    /// Rounding of the trial force and of the limit, N.
     fn slip_rounding(&self) -> f64 {
         let Whole { model, state, .. } = self.whole;
         let Some(Rubbing {
             contact: (contact, contact_at),
-            along: (along, _),
+            along,
             friction,
             law,
             ..
@@ -202,11 +202,12 @@ impl<'a, const S: usize> Locator<'a, S> {
         else {
             return 0.0;
         };
-        let (displacement, velocity) = sum_rounding(model, along, state);
-        let slip = SUM_ROUNDINGS * f64::EPSILON * state.slip.way.abs();
+        let (displacement, velocity) = motion_rounding(model, along, state);
+        let slip = MOTION_ROUNDING * state.slip.way.abs();
         let moved = slip + displacement + law.damping * velocity;
         let stiffness = law.tangent_stiffness(contact.approach + contact_at.approach);
-        stiffness * (friction.ratio * moved + friction.coefficient * motion_rounding(model, contact, state))
+        let engagement = engagement_rounding(model, (contact, contact_at), state);
+        stiffness * (friction.ratio * moved + friction.coefficient * engagement)
     }
 }
 
