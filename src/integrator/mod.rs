@@ -97,7 +97,8 @@
 //!
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there. A blow makes it a
 //! hundred times larger, so at an opening it has to be below [`constants::AT_EVENT`] of the error allowed in a step. An estimate below
-//! what rounding makes of the sums over the modes counts as small ([`constants::ROUNDED`]): no shorter step reduces it.
+//! what rounding makes of the motion ([`constants::MOTION_ROUNDING`]) counts as small ([`constants::ROUNDED`]): no shorter step reduces
+//! it. An error of what is read inside is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]).
 //!
 //! # Step size control
 //!
