@@ -44,7 +44,7 @@ const ROUNDING: f64 = 1e-12;
 /// are known with which it never ends (its issues 611 and 764).
 const ITERATIONS: usize = 30;
 
-/// Pieces of the axis of frequencies that are looked at; where more are needed the eigenvalues tell. Cost.
+/// Pieces of the axis of frequencies that are tried; where more are needed the eigenvalues tell. Cost.
 const MOST_PIECES: u32 = 3000;
 
 /// Slip in a direction in which it is unstable.
@@ -161,9 +161,27 @@ impl Loop<'_> {
     /// Whether it is stable at all stiffnesses up to the greatest. `false` also where that does not show, as with a mode without
     /// damping, at whose frequency the response is infinite.
     fn is_stable(&self) -> bool {
-        let mut left = MOST_PIECES;
-        let fades = self.modes.iter().all(|mode| mode.damping > 0.0);
-        fades && self.keeps_away([0.0, self.far()], &mut left)
+        if !self.modes.iter().all(|mode| mode.damping > 0.0) {
+            return false;
+        }
+        let far = self.far();
+        let (mut from, mut to) = (0.0, far);
+        for _ in 0..MOST_PIECES {
+            if self.keeps_away([from, to]) {
+                if to == far {
+                    return true;
+                }
+                // The next piece may be longer, by the logarithm.
+                let next = if from > 0.0 { to * (to / from).powi(2) } else { 1e3 * to };
+                (from, to) = (to, next.min(far));
+            } else {
+                to = if from > 0.0 { (from * to).sqrt() } else { 1e-3 * to };
+                if to <= from {
+                    return false;
+                }
+            }
+        }
+        false
     }
 
     /// An angular frequency from which on the response is too small, 1/s: it is at most
@@ -177,21 +195,11 @@ impl Loop<'_> {
             .max((2.0 * gain).sqrt())
     }
 
-    /// Whether the response keeps away from the numbers that it must not reach at these frequencies (1/s); `false` also where that
-    /// does not show in so many pieces as are `left`.
-    fn keeps_away(&self, frequencies: Range, left: &mut u32) -> bool {
-        if *left == 0 {
-            return false;
-        }
-        *left -= 1;
+    /// Whether the response keeps away from the numbers that it must not reach at these frequencies (1/s); `false` also where its bounds
+    /// do not show it.
+    fn keeps_away(&self, frequencies: Range) -> bool {
         let ([real, _], [least, greatest]) = self.within(frequencies);
-        if real * self.stiffest > -1.0 || least > 0.0 || greatest < 0.0 {
-            return true;
-        }
-        let [from, to] = frequencies;
-        let middle = if from > 0.0 { (from * to).sqrt() } else { 1e-3 * to };
-        let is_inside = from < middle && middle < to;
-        is_inside && self.keeps_away([from, middle], left) && self.keeps_away([middle, to], left)
+        real * self.stiffest > -1.0 || least > 0.0 || greatest < 0.0
     }
 
     /// Real and imaginary part of the response at these frequencies (1/s), m/N: bounds of them, by those of each mode.

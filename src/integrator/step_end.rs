@@ -95,8 +95,11 @@ impl Stepper<'_> {
         } else {
             (trial.inner_error.total, model.tolerance.step)
         };
-        let rounding = || of_rounding::<S>(model, state, trial, MOTION_ROUNDING);
-        let fits = || error <= allowed.max(trial.rounding) || is_shortest || error <= rounding();
+        let fits = || {
+            error <= allowed.max(trial.rounding)
+                || is_shortest
+                || error <= of_rounding::<S>(model, state, trial, MOTION_ROUNDING)
+        };
         if (event || read.is_some()) && !fits() {
             return Err(Shorter {
                 error,
