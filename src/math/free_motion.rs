@@ -57,18 +57,6 @@ impl<const N: usize> Roots<N> {
             fast,
         }
     }
-
-    /// Those of one.
-    #[inline(always)]
-    #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
-    pub fn alone(&self, i: usize) -> Roots<1> {
-        Roots {
-            creeps: [self.creeps[i]],
-            split: [self.split[i]],
-            slow: [self.slow[i]],
-            fast: [self.fast[i]],
-        }
-    }
 }
 
 impl FreeMotion {

@@ -27,12 +27,12 @@ pub(super) struct Rounds<'a, const S: usize> {
     state: &'a State,
     step: StepCoefficients<'a, S>,
     collocation: &'a Collocation<S>,
+    /// The free response without loads.
+    free: FreeResponse<S>,
     /// Loads at the start.
     start: Modal,
     room: &'a mut AxialLoads<S>,
     count: u64,
-    /// Whether the loads are those of the motion.
-    pub(super) settled: bool,
 }
 
 impl<'a, const S: usize> Rounds<'a, S> {
@@ -41,6 +41,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
     pub(super) fn new(
         (model, axial, state): (&'a Model, &'a Feedback, &'a State),
         (step, collocation): (StepCoefficients<'a, S>, &'a Collocation<S>),
+        free: &FreeResponse<S>,
         room: &'a mut AxialLoads<S>,
     ) -> Self {
         let start = axial.loads(&model.modes, &state.modes);
@@ -53,22 +54,22 @@ impl<'a, const S: usize> Rounds<'a, S> {
             state,
             step,
             collocation,
+            free: free.clone(),
             start,
             room,
             count: 0,
-            settled: false,
         }
     }
 
-    /// The free response with the loads of the motion under the forces of a trial; once that changes the loads no more, with the
-    /// loads under which the forces were found. `None` after too many rounds.
+    /// Sets the free response to that with the loads of the motion under the forces of a trial; once that changes the loads no more,
+    /// with the loads under which the forces were found, and says so. `None` after too many rounds.
     #[inline(always)]
-    pub(super) fn next<A: Arithmetic>(
+    pub(super) fn set_free_response<A: Arithmetic>(
         &mut self,
         source: Source,
-        free: &FreeResponse<S>,
         trial: &Trial<S>,
-    ) -> Option<FreeResponse<S>> {
+        free: &mut FreeResponse<S>,
+    ) -> Option<bool> {
         let AxialLoads { loads, motion, next } = &mut *self.room;
         set_motion::<S, A>((self.model, self.state), self.step, trial, loads, motion);
         set_loads::<S, A>(self.model, self.axial, motion, next);
@@ -77,21 +78,27 @@ impl<'a, const S: usize> Rounds<'a, S> {
             Source::Laws(newton) => newton,
             Source::Given => 0.0,
         };
-        self.settled = self.count > 0 && change <= tolerance + FORCE_ROUNDING * size;
-        if !self.settled {
+        let settled = self.count > 0 && change <= tolerance + FORCE_ROUNDING * size;
+        if !settled {
             self.count += 1;
             loads.copy_from_slice(next);
         }
-        let mut with_loads = with_loads::<S, A>(self.model, free, self.step, loads);
-        with_loads.axial = Some(self.error::<A>(free));
-        (self.count <= ITERATIONS).then_some(with_loads)
+        free.ports = self.free.ports;
+        add_loads::<S, A>(self.model, self.step, loads, free);
+        free.axial = Some(self.error::<A>());
+        (self.count <= ITERATIONS).then_some(settled)
+    }
+
+    /// The loads of the last round.
+    pub(super) fn loads(self) -> &'a [Nodal<S>] {
+        &self.room.loads
     }
 
     /// Effect on the approach of the contact of the defects of base acceleration and loads at the start.
     #[inline(always)]
-    fn error<A: Arithmetic>(&self, free: &FreeResponse<S>) -> NodalMotion<S> {
+    fn error<A: Arithmetic>(&self) -> NodalMotion<S> {
         let mut error = NodalMotion::ZERO;
-        error.add::<A>(free.start_defect, &self.step.acceleration(0).defect);
+        error.add::<A>(self.free.start_defect, &self.step.acceleration(0).defect);
         let modes = self.model.modes.iter().zip(self.step.columns);
         for (((mode, columns), start), load) in modes.zip(&self.start).zip(&self.room.loads) {
             let ModeColumns { load: response, .. } = columns;
@@ -183,21 +190,19 @@ fn force_of_change<const S: usize>(model: &Model, loads: &[Nodal<S>], next: &[No
     ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
 }
 
-/// The free response with the effect of the loads.
+/// Adds the effect of the loads to a free response.
 #[inline(always)]
-fn with_loads<const S: usize, A: Arithmetic>(
+fn add_loads<const S: usize, A: Arithmetic>(
     model: &Model,
-    free: &FreeResponse<S>,
     step: StepCoefficients<'_, S>,
     loads: &[Nodal<S>],
-) -> FreeResponse<S> {
-    let mut with = free.clone();
-    for (port, motion) in model.ports.iter().zip(&mut with.ports) {
+    free: &mut FreeResponse<S>,
+) {
+    for (port, motion) in model.ports.iter().zip(&mut free.ports) {
         for ((b, columns), load) in port.shape.iter().zip(step.columns).zip(loads) {
             motion.respond::<A>(&columns.load.columns, &load.map(|load| b * load));
         }
     }
-    with
 }
 
 #[cfg(test)]

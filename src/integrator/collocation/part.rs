@@ -1,20 +1,22 @@
 //! The first part of a step that has been computed: the exact motion of the modes under the polynomials of the whole step.
 //! A step ends at an event inside it without new coefficients and without another solution for the nodal forces.
 
-use std::array;
-
-use crate::beam::mode::{MAX_MODES, Mode, ModeState, ModeStates};
+use crate::beam::mode::{Modal, ModeStates};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::side_by_side::Loads;
+use crate::integrator::collocation::step::lanes;
 use crate::integrator::collocation::trial::{LinkEnd, Trial};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
 use crate::math::prediction::value_at;
-use crate::math::simd::{Arithmetic, Separate, compiled_for};
+use crate::math::simd::{Arithmetic, LANES, Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
+
+/// Base acceleration, forces at ports, and an axial force on each of the modes side by side.
+const MOST_LOADS: usize = 1 + MAX_PORTS + LANES;
 
 /// A link at an instant inside a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,12 +46,17 @@ pub(crate) struct Whole<'a, const S: usize> {
 impl<const S: usize> Whole<'_, S> {
     /// The modes `at` seconds after the start.
     pub(crate) fn modes(&self, at: f64, ends: &mut ModeStates) {
-        compiled_for!(self.model.simd, A => self.compute::<A>(at, ends));
+        if self.model.ports.len() == 1 && self.model.axial().is_none() {
+            compiled_for!(self.model.simd, A => self.compute::<2, A>(at, ends));
+        } else {
+            compiled_for!(self.model.simd, A => self.compute::<MOST_LOADS, A>(at, ends));
+        }
     }
 
+    /// Where no force changes, it is about the equilibrium under the forces as they are: there are fewer loads then.
     #[inline(always)]
-    #[expect(clippy::indexing_slicing, reason = "ports of the model")]
-    fn compute<A: Arithmetic>(&self, at: f64, ends: &mut ModeStates) {
+    #[expect(clippy::indexing_slicing, reason = "ports of the model, and loads in use")]
+    fn compute<const LOADS: usize, A: Arithmetic>(&self, at: f64, ends: &mut ModeStates) {
         let Self {
             model,
             state,
@@ -62,78 +69,68 @@ impl<const S: usize> Whole<'_, S> {
         for (row, node) in rows.iter_mut().zip(&collocation.nodes) {
             *row = collocation.lagrange(node * (at / self.length));
         }
-        let base = load_on::<S, A>(shapes, &rows, &trial.accelerations);
-        let flies = !state.is_closed() && model.links.iter().all(|link| link.contact().is_some());
-        if flies && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0) {
-            // About the equilibrium under the forces that are missing.
-            let (mut starts, mut leans) = (state.modes, [0.0; MAX_MODES]);
-            for (link, nodes) in model.links.iter().zip(&trial.links) {
-                let force = link.sense * nodes.forces[0];
-                for (lean, shape) in leans.iter_mut().zip(&model.ports[link.port].shape) {
-                    *lean += force * shape;
+        let flies = !state.is_closed()
+            && model.links.iter().all(|link| link.contact().is_some())
+            && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0);
+        let mut at_ports = [[0.0; S]; MAX_PORTS];
+        for (link, nodes) in model.links.iter().zip(&trial.links) {
+            add::<S, A>(&mut at_ports[link.port], link.sense, &nodes.forces);
+        }
+        let mut polynomials = [Load::ZERO; LOADS];
+        let mut parts = [[0.0; LANES]; LOADS];
+        polynomials[0] = load_on::<S, A>(shapes, &rows, &scaled(&trial.accelerations, -1.0));
+        let mut count = 1;
+        if !flies {
+            for forces in at_ports.iter().take(model.ports.len()) {
+                polynomials[count] = load_on::<S, A>(shapes, &rows, forces);
+                count += 1;
+            }
+        }
+        let of_ports = count;
+        if model.axial().is_some() {
+            for i in 0..LANES {
+                parts[count + i][i] = 1.0;
+            }
+            count += LANES;
+        }
+        let starts = state.modes.as_chunks::<LANES>().0.iter();
+        let ends = ends.as_chunks_mut::<LANES>().0.iter_mut();
+        for (group, (modes, (starts, ends))) in model.modes.chunks(LANES).zip(starts.zip(ends)).enumerate() {
+            let of_group = |values: &Modal| *lanes(values, group);
+            // A mode that does not move takes the place of those that there are not.
+            let mut of_lanes = [modes[0]; LANES];
+            of_lanes[..modes.len()].copy_from_slice(modes);
+            parts[0] = of_group(&model.participations);
+            let (mut starts, mut leans) = (*starts, [0.0; LANES]);
+            if flies {
+                for (port, forces) in model.ports.iter().zip(&at_ports) {
+                    add::<LANES, A>(&mut leans, forces[0], &of_group(&port.shape));
+                }
+                for ((lean, mode), at) in leans.iter_mut().zip(&of_lanes).zip(&mut starts) {
+                    *lean /= mode.omega_squared;
+                    at.q -= *lean;
+                }
+            } else {
+                for (parts, port) in parts[1..].iter_mut().zip(&model.ports) {
+                    *parts = of_group(&port.shape);
                 }
             }
-            for ((lean, mode), at) in leans.iter_mut().zip(&model.modes).zip(&mut starts) {
-                *lean /= mode.omega_squared;
-                at.q -= *lean;
+            if model.axial().is_some() {
+                let own = self.axial.chunks(LANES).nth(group).unwrap_or_default();
+                for (i, polynomial) in polynomials[of_ports..count].iter_mut().enumerate() {
+                    *polynomial = load_on::<S, A>(shapes, &rows, own.get(i).unwrap_or(&[0.0; S]));
+                }
             }
             let loads = Loads {
                 shapes,
                 length: at,
-                polynomials: [&base],
+                polynomials: &polynomials[..count],
+                parts: &parts[..count],
             };
-            loads.move_all::<A>(&model.modes, |_, mode| [-mode.participation], &starts, ends);
-            for (end, lean) in ends.iter_mut().zip(&leans).take(model.modes.len()) {
+            loads.moved::<A>(&of_lanes, &starts, ends);
+            for (end, lean) in ends.iter_mut().zip(&leans) {
                 end.q += lean;
             }
-        } else if let ([link], [port]) = (&*model.links, &*model.ports) {
-            let force = load_on::<S, A>(shapes, &rows, &scaled(&trial.links[0].forces, link.sense));
-            let loads = Loads {
-                shapes,
-                length: at,
-                polynomials: [&base, &force],
-            };
-            let factors = |i: usize, mode: &Mode| [-mode.participation, port.shape[i]];
-            loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
-        } else {
-            let mut at_ports = [[0.0; S]; MAX_PORTS];
-            for (link, nodes) in model.links.iter().zip(&trial.links) {
-                add::<S, A>(&mut at_ports[link.port], link.sense, &nodes.forces);
-            }
-            let at_ports = at_ports.map(|forces| load_on::<S, A>(shapes, &rows, &forces));
-            let polynomials: [&Load; MAX_PORTS + 1] = array::from_fn(|p| if p == 0 { &base } else { &at_ports[p - 1] });
-            let loads = Loads {
-                shapes,
-                length: at,
-                polynomials,
-            };
-            let factors = |i: usize, mode: &Mode| -> [f64; MAX_PORTS + 1] {
-                array::from_fn(|p| match p {
-                    0 => -mode.participation,
-                    _ => model.ports.get(p - 1).map_or(0.0, |port| port.shape[i]),
-                })
-            };
-            loads.move_all::<A>(&model.modes, factors, &state.modes, ends);
-        }
-        if model.axial().is_some() {
-            self.add_axial::<A>(&rows, at, ends);
-        }
-    }
-
-    /// Adds the motion under an axial force, which loads each mode in its own way.
-    #[inline(always)]
-    fn add_axial<A: Arithmetic>(&self, rows: &[Nodal<S>; S], at: f64, ends: &mut ModeStates) {
-        let shapes = &self.collocation.shapes;
-        for ((mode, own), end) in self.model.modes.iter().zip(self.axial).zip(ends.iter_mut()) {
-            let loads = Loads {
-                shapes,
-                length: at,
-                polynomials: [&load_on::<S, A>(shapes, rows, own)],
-            };
-            let mut by_axial = [ModeState::default()];
-            loads.moved::<A, 1>(array::from_ref(mode), &[[1.0]], &[ModeState::default()], &mut by_axial);
-            let [ModeState { q, v }] = by_axial;
-            (end.q, end.v) = (end.q + q, end.v + v);
         }
     }
 
@@ -222,6 +219,7 @@ pub(crate) fn shorten<const S: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::beam::mode::{MAX_MODES, ModeState};
     use crate::integrator::collocation::cache::{Cache, OF_LONG};
     use crate::integrator::collocation::polynomial::LONG_BY_TIME;
     use crate::integrator::collocation::step::compute;

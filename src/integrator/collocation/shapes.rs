@@ -86,6 +86,14 @@ pub struct Load {
     pub derivatives: [[f64; 2]; MAX_SHAPES],
 }
 
+impl Load {
+    /// No load.
+    pub(super) const ZERO: Self = Self {
+        integrals: [0.0; TERMS],
+        derivatives: [[0.0; 2]; MAX_SHAPES],
+    };
+}
+
 impl<const S: usize> Table<S> {
     /// All zero.
     pub const ZERO: Self = Self {
@@ -131,10 +139,7 @@ impl<const S: usize> Shapes<S> {
     /// The nodal polynomial through these values.
     #[inline(always)]
     pub fn load<A: Arithmetic>(&self, values: &Nodal<S>) -> Load {
-        let mut load = Load {
-            integrals: [0.0; TERMS],
-            derivatives: [[0.0; 2]; MAX_SHAPES],
-        };
+        let mut load = Load::ZERO;
         for (integral, row) in load.integrals.iter_mut().zip(&self.end_integrals) {
             *integral = dot::<S, A>(row, values);
         }

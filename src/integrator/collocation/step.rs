@@ -78,51 +78,70 @@ impl<const S: usize> Step<'_, S> {
         self.guess::<A>(trial);
         let Scratch { joined, axial } = scratch;
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
-        let mut loads = None;
-        if let Some(feedback) = model.axial() {
-            let without = free.clone();
-            let mut rounds = Rounds::new((model, feedback, state), (step, collocation), axial);
-            loop {
-                free = rounds.next::<A>(self.source, &without, trial)?;
-                if rounds.settled {
+        let mut rounds = model
+            .axial()
+            .map(|feedback| Rounds::new((model, feedback, state), (step, collocation), &free, axial));
+        loop {
+            let settled = match &mut rounds {
+                Some(rounds) => rounds.set_free_response::<A>(self.source, trial, &mut free)?,
+                None => true,
+            };
+            if self.unknowns.count > 0 {
+                let solution = self.solve::<L, A>(&linked, &free, trial)?;
+                if settled {
+                    self.judge::<L, A>(&linked, &free, &solution, trial);
                     break;
                 }
-                if self.unknowns.count > 0 {
-                    self.solve::<L, A>(&linked, &free, trial)?;
-                }
+            } else if settled {
+                self.judge_flight::<A>(&free, trial);
+                break;
             }
-            loads = Some(axial.loads.as_slice());
         }
-        if self.unknowns.count > 0 {
-            let solution = self.solve::<L, A>(&linked, &free, trial)?;
-            let judged = Judged {
-                linked: &linked,
-                step,
-                collocation,
-                free: &free,
-                bent: self.drive.has_just_changed(state.time, step.length),
-            };
-            judged.estimate::<A>(&solution, trial);
-            if !state.is_closed() {
-                // A magnet alone: what flies is judged as well.
-                let (error, inside) = (trial.error, trial.inner_error);
-                estimate_in_flight(model, step, &free, trial);
-                (trial.error, trial.inner_error) = (trial.error.or(error), trial.inner_error.or(inside));
-            }
-            self.set_motion::<A>(&free.ports, &solution.motions, trial);
-        } else {
-            trial.iterations = 0;
-            estimate_in_flight(model, step, &free, trial);
-            if let Source::Given = self.source {
-                (trial.error, trial.inner_error) = (Estimate::default(), Estimate::default());
-            }
-            self.set_motion::<A>(&free.ports, &[NodalMotion::ZERO; L], trial);
-        }
+        let loads = rounds.map(Rounds::loads);
         self.set_end::<A>(trial, loads);
         if let Some((rubbing, friction)) = model.friction() {
             follow::<S, A>(model, state, (step, collocation), (rubbing, friction), trial);
         }
         Some(())
+    }
+
+    /// Sets estimates and motion of a step of which the forces have been found.
+    #[inline(always)]
+    fn judge<const L: usize, A: Arithmetic>(
+        &self,
+        linked: &Linked<S, L>,
+        free: &FreeResponse<S>,
+        solution: &Solution<S, L>,
+        trial: &mut Trial<S>,
+    ) {
+        let Self { model, state, .. } = *self;
+        let Prepared { step, collocation, .. } = self.prepared;
+        let judged = Judged {
+            linked,
+            step,
+            collocation,
+            free,
+            bent: self.drive.has_just_changed(state.time, step.length),
+        };
+        judged.estimate::<A>(solution, trial);
+        if !state.is_closed() {
+            // A magnet alone: what flies is judged as well.
+            let (error, inside) = (trial.error, trial.inner_error);
+            estimate_in_flight(model, step, free, trial);
+            (trial.error, trial.inner_error) = (trial.error.or(error), trial.inner_error.or(inside));
+        }
+        self.set_motion::<A>(&free.ports, &solution.motions, trial);
+    }
+
+    /// The same of a step in which no force is unknown.
+    #[inline(always)]
+    fn judge_flight<A: Arithmetic>(&self, free: &FreeResponse<S>, trial: &mut Trial<S>) {
+        trial.iterations = 0;
+        estimate_in_flight(self.model, self.prepared.step, free, trial);
+        if let Source::Given = self.source {
+            (trial.error, trial.inner_error) = (Estimate::default(), Estimate::default());
+        }
+        self.set_motion::<A>(&free.ports, &[], trial);
     }
 
     /// Motion of the ports under what is known: the state of the modes, the base acceleration, and forces that do not depend on
@@ -423,6 +442,6 @@ impl LaneEnd {
     clippy::indexing_slicing,
     reason = "the room for the modes is a whole number of lanes"
 )]
-fn lanes(values: &Modal, group: usize) -> &[f64; LANES] {
+pub(super) fn lanes(values: &Modal, group: usize) -> &[f64; LANES] {
     &values.as_chunks::<LANES>().0[group]
 }
