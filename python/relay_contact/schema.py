@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -100,6 +101,7 @@ def line(path: Path, place: Place) -> int:
     """
     lines = path.read_text(encoding="utf-8-sig").split("\n")
 
+    @cache
     def content(count: int) -> dict[str, Any] | None:
         try:
             return tomllib.loads("\n".join(lines[:count]))

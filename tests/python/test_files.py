@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-import tomlkit
+import tomli_w
 
 from component import COMPONENT, ROOT
 from relay_contact import RelayContactError, Scene, run, scenes
@@ -82,7 +82,7 @@ def wrong(content: dict[str, Any]) -> Iterator[tuple[dict[str, Any], tuple[Any, 
 
 def written(path: Path, content: dict[str, Any]) -> Path:
     """Write a file; what is not TOML at all is left out."""
-    path.write_text(tomlkit.dumps(content), encoding="utf-8")
+    path.write_text(tomli_w.dumps(content), encoding="utf-8")
     return path
 
 
