@@ -5,6 +5,7 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::Cache;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::Trial;
+use crate::integrator::constants::{MANY_STEPS, SEEN};
 use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};
@@ -13,13 +14,6 @@ use crate::math::nodal::{Nodal, add_columns, end};
 use crate::math::simd::{Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
-
-/// Steps from one look at what is unresolved to the next: it lasts longer than a step, and a look at each costs 1 %.
-const EACH: u64 = 4;
-
-/// Length from which on a step is counted by the force that the deviation makes in it, s. A communication point is hardly ever nearer
-/// to the instant of a closing, at which a wrong instant is a wrong force.
-const READ: f64 = 1e-9;
 
 /// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step; returns the course of slip over it.
 pub(crate) fn commit<const S: usize>(
@@ -50,7 +44,7 @@ pub(crate) fn commit<const S: usize>(
             _ => {}
         }
     }
-    if state.steps.is_multiple_of(EACH) {
+    if state.steps.is_multiple_of(MANY_STEPS.into()) {
         let indentation = model.preload.indentation + state.contact().approach;
         let stiffness = model.law().stiffness(indentation);
         let error = model.resolution.error_of(&state.modes, stiffness);
@@ -87,7 +81,7 @@ fn advance_deviation<const S: usize>(
         known.unwrap_or_else(|| FreeMotion::new(mode.omega_squared, mode.damping, target.length))
     });
     compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, &free, at_work));
-    if target.length > READ {
+    if target.length > SEEN {
         state.force_error.note_deviation(model.force_scale);
     }
 }

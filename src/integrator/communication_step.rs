@@ -355,7 +355,7 @@ fn take_steps(
     let budget = Budget::new(workspace);
     while motion.end.time < time {
         budget.check(&workspace.search, motion.end.time)?;
-        if time - motion.end.time >= MANY_STEPS * motion.end.lengths.own()
+        if time - motion.end.time >= f64::from(MANY_STEPS) * motion.end.lengths.own()
             && let Some(until) = rests_until(model, &motion.end, &motion.drive, time)
         {
             motion.end.time = until;

@@ -101,7 +101,7 @@ pub(crate) fn step_ahead(
     };
     let remaining = until - state.time;
     let mut requested = state.lengths.long;
-    if remaining >= MANY_STEPS * requested {
+    if remaining >= f64::from(MANY_STEPS) * requested {
         // One with dense output would not come so far.
         return step_until(model, state, workspace, drive, until);
     }

@@ -2,7 +2,7 @@
 
 use crate::error::StepError;
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::LEAST_LEAP;
+use crate::integrator::constants::LONGER;
 use crate::integrator::grid::{Target, round_down};
 use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
 use crate::integrator::stepper::Stepper;
@@ -21,7 +21,7 @@ impl Stepper<'_> {
         if !has_closed || self.progress.conserves {
             return None;
         }
-        let least = LEAST_LEAP * lengths.short;
+        let least = LONGER * lengths.short;
         if lengths.leap < least {
             // The next closing may be gentler.
             lengths.leap *= 2.0;

@@ -91,7 +91,7 @@ impl Stepper<'_> {
         let (error, allowed) = if is_cut && !event {
             (trial.inner_error.with(passing), model.tolerance.step)
         } else if state.is_closed() {
-            (trial.inner_error.total, model.tolerance.at_opening)
+            (trial.inner_error.total, model.tolerance.at_event)
         } else {
             (trial.inner_error.total, model.tolerance.step)
         };

@@ -174,6 +174,12 @@ pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
     }
 }
 
+/// Whether that is 2 or more.
+#[expect(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "few nodes")]
+pub(crate) fn doubles<const S: usize>(ratio: f64) -> bool {
+    (2.0 / SAFETY).powi(S as i32 + 1) * ratio <= 1.0
+}
+
 /// Factor on the length after a rejection for the relative error `ratio`, with the safety factor applied twice; the smallest without
 /// an error estimate.
 pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {

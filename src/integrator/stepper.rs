@@ -15,7 +15,7 @@ use crate::integrator::events::interruption::Passages;
 use crate::integrator::events::{Event, Locator};
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::recorder::Recorder;
-use crate::integrator::step_length::{StepOutcome, growth};
+use crate::integrator::step_length::{StepOutcome, doubles};
 use crate::integrator::transition;
 use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
 use crate::math::nodal::{LONG, SHORT};
@@ -129,7 +129,7 @@ impl Stepper<'_> {
         let fails = ratio > 1.0 && (closed || inside < 1.0);
         // What does not shrink with the step keeps one that is far too short from growing to the next length of the grid.
         let of_inside = closed && ratio == inside;
-        let stays = of_inside && ratio <= 1.0 && growth::<S>(ratio) < 2.0;
+        let stays = of_inside && ratio <= 1.0 && !doubles::<S>(ratio);
         let (error, rounding) = if of_inside {
             (inside * model.tolerance.force, FREE_ROUNDING)
         } else {

@@ -1,6 +1,6 @@
 //! The errors allowed, all from `solver.tolerance` and the force scale.
 
-use crate::integrator::constants::{AT_EVENT, LOCATED, LOOSEST, NEWTON, SHARE};
+use crate::integrator::constants::{AT_EVENT, LOOSEST, NEWTON, SHARE};
 
 /// The errors allowed, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,10 +11,9 @@ pub struct Tolerance {
     pub(crate) step: f64,
     /// Left by Newton's method in a nodal force.
     pub(crate) newton: f64,
-    /// Added by a step that ends where a contact opens: a blow makes it a hundred times larger.
-    pub(crate) at_opening: f64,
-    /// Force that counts as zero where an event is located.
-    pub(crate) located: f64,
+    /// Added by a step that ends where a contact opens, and force that counts as zero where an event is located: a blow makes it a
+    /// hundred times larger.
+    pub(crate) at_event: f64,
 }
 
 impl Tolerance {
@@ -26,8 +25,7 @@ impl Tolerance {
             force,
             step,
             newton: NEWTON * step,
-            at_opening: AT_EVENT * step,
-            located: LOCATED * step,
+            at_event: AT_EVENT * step,
         }
     }
 }

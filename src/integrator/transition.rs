@@ -2,14 +2,11 @@
 
 use crate::contact::friction::Phase;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::WORTH;
+use crate::integrator::constants::{LEAST_SHRINK, WORTH};
 use crate::integrator::events::log::{self, Events};
 use crate::link::LinkLaw;
 use crate::model::Model;
 use crate::state::State;
-
-/// First step after a jump of an acceleration, in first steps of a motion, 1: the modes that it sets vibrating are faster.
-const AFTER_JUMP: f64 = 0.1;
 
 /// Opens or closes a contact at the instant of the state. Short steps begin anew.
 pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut Events) {
@@ -121,7 +118,7 @@ fn restart(model: &Model, state: &mut State, index: usize) {
 
 /// First step after an acceleration has jumped or bent, s.
 pub(crate) fn step_after_jump(model: &Model, state: &State) -> f64 {
-    AFTER_JUMP * model.first_step(state.time)
+    LEAST_SHRINK * model.first_step(state.time)
 }
 
 /// First step after closing, s. The dissipative force starts as the square root of time, which no polynomial

@@ -114,7 +114,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         // A contact whose force is far below the tolerance need not be found.
-        let negligible = sought.law.overlap(self.whole.model.tolerance.located);
+        let negligible = sought.law.overlap(self.whole.model.tolerance.at_event);
         let (ripple, length) = (self.search.swings.ripple(cubic), cubic.length());
         let (least, unseen) = (
             negligible.max(sought.unsure),
@@ -210,7 +210,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn prolonged(&mut self, sought: &Sought, touch: Instant, mut shortest: f64) -> Instant {
         while touch.at < shortest {
             let end = self.inside(sought.index, shortest);
-            if sought.link.force_at(end.d, end.rate) <= self.whole.model.tolerance.located
+            if sought.link.force_at(end.d, end.rate) <= self.whole.model.tolerance.at_event
                 || shortest <= self.resolution
             {
                 return end;

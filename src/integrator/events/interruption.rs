@@ -82,7 +82,7 @@ impl<const S: usize> Locator<'_, S> {
                 } else {
                     let force = |d, rate| link.force_at(d, rate) - criterion.force;
                     let from = ((1.0 + before.0) * length, before.1);
-                    let rounding = model.tolerance.at_opening;
+                    let rounding = model.tolerance.at_event;
                     let found = self.instant(index, force, from, (1.0 + y) * length, rounding);
                     found.at / length - 1.0
                 };

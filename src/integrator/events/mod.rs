@@ -168,7 +168,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             .0
             .contact()
             .map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
-        (self.whole.model.tolerance.located / stiffness).max(engagement_rounding(model, link, state))
+        (self.whole.model.tolerance.at_event / stiffness).max(engagement_rounding(model, link, state))
     }
 }
 

@@ -143,7 +143,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// force for the slip velocity.
     fn is_beyond(&mut self, at: f64, value: f64, phase: Phase) -> bool {
         let rounding = self.slip_rounding();
-        if value <= rounding.max(self.whole.model.tolerance.located) {
+        if value <= rounding.max(self.whole.model.tolerance.at_event) {
             return false;
         }
         let damped = self.rubbing().is_some_and(|rubbing| rubbing.law.damping > 0.0);
