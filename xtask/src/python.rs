@@ -57,7 +57,9 @@ fn requirements() -> Result<String> {
 
 fn pip() -> Command {
     let mut pip = python();
-    pip.args(["-m", "pip", "install", "--disable-pip-version-check", "--quiet"]);
+    // Modules are compiled when they are first imported; most never are.
+    let quick = ["--disable-pip-version-check", "--no-compile", "--quiet"];
+    pip.args(["-m", "pip", "install"]).args(quick);
     pip
 }
 
