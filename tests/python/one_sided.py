@@ -7,7 +7,7 @@ integrates between the instants at which one of them changes, which it finds as 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import pi, sin
+from math import cos, pi, sin
 from typing import Any, Literal
 
 import numpy as np
@@ -76,11 +76,17 @@ class Course:
 
 
 def shaking(known: dict[str, Any]) -> tuple[Acceleration, float]:
-    """Return the acceleration of the base by the parameters of a component, and the instant at which it ends (s)."""
-    amplitude, duration = known["excitation.amplitude"], known["excitation.duration"]
+    """Return the acceleration of the base by the parameters of a component, and the instant (s) at which it bends."""
+    amplitude: float = known["excitation.amplitude"]
+    duration: float = known["excitation.duration"]
     match known["effects.excitation"]:
         case "Sine":
-            return lambda time: amplitude * sin(2 * pi * known["excitation.frequency"] * time), np.inf
+            omega, rise = 2 * pi * known["excitation.frequency"], known["excitation.riseTime"]
+
+            def risen(time: float) -> float:
+                return amplitude * (1 - cos(pi * time / rise)) / 2 if time < rise else amplitude
+
+            return lambda time: risen(time) * sin(omega * time), rise or np.inf
         case "HalfSine":
             return lambda time: amplitude * sin(pi * time / duration) if time < duration else 0.0, duration
     return lambda _: 0.0, np.inf
