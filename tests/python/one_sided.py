@@ -75,6 +75,11 @@ class Course:
     """What else is observed, by column."""
 
 
+def risen(time: float, rise: float) -> float:
+    """Return the part of its amplitude that a sine has reached which rises by half a period of a cosine."""
+    return (1 - cos(pi * time / rise)) / 2 if time < rise else 1.0
+
+
 def shaking(known: dict[str, Any]) -> tuple[Acceleration, float]:
     """Return the acceleration of the base by the parameters of a component, and the instant (s) at which it bends."""
     amplitude: float = known["excitation.amplitude"]
@@ -82,11 +87,7 @@ def shaking(known: dict[str, Any]) -> tuple[Acceleration, float]:
     match known["effects.excitation"]:
         case "Sine":
             omega, rise = 2 * pi * known["excitation.frequency"], known["excitation.riseTime"]
-
-            def risen(time: float) -> float:
-                return amplitude * (1 - cos(pi * time / rise)) / 2 if time < rise else amplitude
-
-            return lambda time: risen(time) * sin(omega * time), rise or np.inf
+            return lambda time: amplitude * risen(time, rise) * sin(omega * time), rise or np.inf
         case "HalfSine":
             return lambda time: amplitude * sin(pi * time / duration) if time < duration else 0.0, duration
     return lambda _: 0.0, np.inf

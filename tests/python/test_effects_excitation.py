@@ -1,13 +1,13 @@
 """The generators of base acceleration, by the force on a bonded contact: that of their closed forms, exactly."""
 
 from collections.abc import Callable
-from math import cos, exp, log, pi, sin
+from math import exp, log, pi, sin
 
 import numpy as np
 import pytest
 
 from component import run
-from one_sided import Acceleration
+from one_sided import Acceleration, risen
 from reference import Reference
 from relay_contact import Array, Values
 
@@ -40,8 +40,7 @@ def sine(amplitude: float) -> Acceleration:
 
 def rising(tau: float) -> float:
     """Give a sine that rises by half a period of a cosine."""
-    reached = (1 - cos(pi * tau / RISE)) / 2 if tau < RISE else 1.0
-    return AMPLITUDE * reached * sin(2 * pi * FREQUENCY * tau + PHASE)
+    return AMPLITUDE * risen(tau, RISE) * sin(2 * pi * FREQUENCY * tau + PHASE)
 
 
 def half_sine(tau: float) -> float:
