@@ -11,6 +11,16 @@ pub const MAX_MODES: usize = 128;
 /// A value for each mode; those beyond the modes in use are zero.
 pub type Modal = [f64; MAX_MODES];
 
+/// The values of a group of modes.
+#[inline(always)]
+#[expect(
+    clippy::indexing_slicing,
+    reason = "the room for the modes is a whole number of lanes"
+)]
+pub(crate) fn lanes(values: &Modal, group: usize) -> &[f64; LANES] {
+    &values.as_chunks::<LANES>().0[group]
+}
+
 /// Coefficients in the last functions of a space of shapes, sqrt(J).
 pub type Last = [f64; LANES];
 

@@ -174,7 +174,7 @@ pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
     }
 }
 
-/// Whether that is 2 or more.
+/// Whether [`growth`] is 2 or more, without a root.
 #[expect(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "few nodes")]
 pub(crate) fn doubles<const S: usize>(ratio: f64) -> bool {
     (2.0 / SAFETY).powi(S as i32 + 1) * ratio <= 1.0
@@ -193,4 +193,20 @@ pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {
 /// Factor to the step size at which the relative error `ratio` becomes 1: the error estimate is of order `S + 1`.
 fn step_factor<const S: usize>(ratio: f64) -> f64 {
     ratio.powf(-1.0 / (S as f64 + 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::nodal::{LONG, SHORT};
+
+    #[test]
+    fn a_step_doubles_where_it_grows_by_two() {
+        for k in -400..=100 {
+            // Not where it grows by exactly two, within rounding.
+            let ratio = 10_f64.powf(f64::from(k) / 37.0);
+            assert_eq!(doubles::<SHORT>(ratio), growth::<SHORT>(ratio) >= 2.0, "{ratio}");
+            assert_eq!(doubles::<LONG>(ratio), growth::<LONG>(ratio) >= 2.0, "{ratio}");
+        }
+    }
 }

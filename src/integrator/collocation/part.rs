@@ -1,12 +1,11 @@
 //! The first part of a step that has been computed: the exact motion of the modes under the polynomials of the whole step.
 //! A step ends at an event inside it without new coefficients and without another solution for the nodal forces.
 
-use crate::beam::mode::{Modal, ModeStates};
+use crate::beam::mode::{Modal, ModeStates, lanes};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Load, Shapes};
 use crate::integrator::collocation::side_by_side::Loads;
-use crate::integrator::collocation::step::lanes;
 use crate::integrator::collocation::trial::{LinkEnd, Trial};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
@@ -226,18 +225,28 @@ mod tests {
     use crate::integrator::collocation::trial::{Scratch, Source};
     use crate::math::nodal::LONG;
     use crate::scene::Scene;
-    use crate::variables::ExcitationKind;
+    use crate::variables::{AxialForceKind, ExcitationKind};
 
     /// At its end a look sees what the coefficients of the step make of it, in flight and closed, at any damping and length, with one
-    /// contact and with two.
+    /// contact and with two, and under an axial force on modes that do not fill their last group.
     #[test]
     #[expect(clippy::indexing_slicing, reason = "a spring has modes")]
     fn a_look_at_the_end_is_the_end_of_the_step() {
-        for (lifted, second) in [(0.0, false), (5e-6, false), (5e-6, true)] {
+        for (lifted, second, modes) in [
+            (0.0, false, 0),
+            (5e-6, false, 0),
+            (5e-6, true, 0),
+            (0.0, false, 6),
+            (5e-6, false, 6),
+        ] {
             for damping in [0.0, 0.01, 0.3, 3.0] {
                 let mut scene = Scene::default();
                 scene.effects.second_contact = second;
                 scene.second.gap = 5e-3;
+                if modes > 0 {
+                    scene.effects.axial_force = AxialForceKind::FromDeflection;
+                    scene.solver.modes = modes;
+                }
                 scene.beam.stiffness_damping *= damping;
                 scene.effects.excitation = ExcitationKind::Sine;
                 scene.excitation.amplitude = 300.0;
@@ -272,6 +281,7 @@ mod tests {
                     };
                     let mut looked = [ModeState::default(); MAX_MODES];
                     whole.modes(length, &mut looked);
+                    assert_eq!(looked[model.modes.len()..], state.modes[model.modes.len()..]);
                     for (mode, (seen, end)) in model.modes.iter().zip(looked.iter().zip(&trial.modes)) {
                         let omega = mode.omega_squared.sqrt();
                         // With what it leans under the preload, and what the acceleration gives it.
@@ -281,7 +291,7 @@ mod tests {
                         // Cancellation of power series and derivatives, as in the test of the responses.
                         assert!(
                             wrong <= 1e-11 * size,
-                            "{lifted} m, {second}, {damping}, {length} s, {omega} 1/s: {seen:?}, not {end:?}"
+                            "{lifted} m, {second}, {modes}, {damping}, {length} s, {omega} 1/s: {seen:?}, not {end:?}"
                         );
                     }
                 }

@@ -31,7 +31,7 @@ struct Group {
     /// Factors of velocity and displacement in the acceleration, times the step length.
     damping: Lanes,
     squared: Lanes,
-    /// The roots times the step length, which are negative or complex: their magnitudes.
+    /// Magnitudes of the roots, times the step length.
     slow: Lanes,
     fast: Lanes,
     free: [FreeMotion; LANES],

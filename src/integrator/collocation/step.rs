@@ -1,7 +1,7 @@
 //! A trial step: the nodal forces of the links ([`newton`](crate::integrator::collocation::newton)), the motion they cause, and
 //! its error ([`error`](crate::integrator::collocation::error)).
 
-use crate::beam::mode::{Modal, ModeState};
+use crate::beam::mode::{ModeState, lanes};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
@@ -434,14 +434,4 @@ impl LaneEnd {
             add_products::<LANES, A>(&mut self.v, of_v, &load);
         }
     }
-}
-
-/// The values of a group of modes.
-#[inline(always)]
-#[expect(
-    clippy::indexing_slicing,
-    reason = "the room for the modes is a whole number of lanes"
-)]
-pub(super) fn lanes(values: &Modal, group: usize) -> &[f64; LANES] {
-    &values.as_chunks::<LANES>().0[group]
 }
