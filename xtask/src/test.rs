@@ -87,10 +87,8 @@ fn library() -> Result<()> {
     stage("Rust tests compile", || run_command(cargo().args(["test", "--no-run"])))?;
     python::prepare()?;
     stage("lint", || {
-        let mut lint = importers::conformance("clippy")?;
-        // But benches, whose integrators take long to compile.
-        lint.args(["--workspace", "--exclude=benches", "--features=conformance/types"]);
-        run_command(lint.args(LINT))
+        let mut lint = importers::workspace("clippy")?;
+        run_command(lint.arg("--features=conformance/types").args(LINT))
     })?;
     rust()?;
     if_installed("valgrind", valgrind::is_installed(), valgrind::MISSING, valgrind::run)
