@@ -85,14 +85,21 @@ pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 
             electrical.temperature(scene, force, motion.current * circuit.share())
         }
         RealOutput::ContactTemperature => scene.environment.temperature,
-        RealOutput::StepMaximumResistance if scene.effects.extremes => {
-            let mut extremes = motion.extremes(model);
-            1.0 / match model.roles.parallel {
-                Some(_) => electrical.beside(extremes.pair),
-                None => electrical.conductance(extremes.of(CONTACT).least),
-            }
-        }
         _ => 0.0,
+    }
+}
+
+/// Greatest resistance of the circuit of the contact within the last communication step, Ohm; 0 without a resistance, or if extremes
+/// are not requested.
+pub(crate) fn greatest_resistance(model: &Model, motion: &Motion) -> f64 {
+    let electrical = model.links.get(CONTACT).and_then(|link| link.electrical);
+    let Some(electrical) = electrical.filter(|_| model.scene.effects.extremes) else {
+        return 0.0;
+    };
+    let mut extremes = motion.extremes(model);
+    1.0 / match model.roles.parallel {
+        Some(_) => electrical.beside(extremes.pair),
+        None => electrical.conductance(extremes.of(CONTACT).least),
     }
 }
 

@@ -208,9 +208,9 @@ impl Simulation {
             | RealOutput::ContactResistance
             | RealOutput::ContactVoltage
             | RealOutput::ContactTemperature
-            | RealOutput::StepMaximumResistance
             | RealOutput::SecondConductance
             | RealOutput::SecondResistance => conduction::output(model, motion, output),
+            RealOutput::StepMaximumResistance => conduction::greatest_resistance(model, motion),
             RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
             RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
             RealOutput::StepMinimumGap => match self.extremes().filter(|_| roles.second.is_some()) {
@@ -340,8 +340,8 @@ impl Simulation {
         let link = role.and_then(|index| self.model.links.get(index));
         let counted = link.and_then(|link| Some((link.circuit, link.criterion?)));
         counted.map_or_else(Summary::default, |(circuit, criterion)| {
-            let circuits = self.motion.circuits(&self.model);
-            summary(&circuits.of(circuit), &criterion, self.time())
+            let interruptions = self.motion.interruptions(&self.model, circuit);
+            summary(&interruptions, &criterion, self.time())
         })
     }
 

@@ -7,7 +7,7 @@
 use std::fmt;
 
 use crate::beam::mode::{MAX_MODES, Modal};
-use crate::circuits::Circuits;
+use crate::chatter::Interruptions;
 use crate::contact::friction::{Phase, Slip};
 use crate::excitation::drive::Drive;
 use crate::integrator::course::turning_points_between;
@@ -447,13 +447,17 @@ impl Motion {
         extremes.add_pair(model, course, (from, to));
     }
 
-    /// Interruptions up to the communication point; none if they are not counted.
-    pub fn circuits(&self, model: &Model) -> Circuits {
-        let mut circuits = self.state().circuits;
-        if let Some(now) = self.inside() {
-            let passages = self.dense.links.each_ref().map(|dense| &dense.passages);
-            circuits.pass(&model.links, &passages, (self.end.time, self.length()), now);
-        }
-        circuits
+    /// Interruptions of a circuit up to the communication point; none if they are not counted.
+    pub fn interruptions(&self, model: &Model, circuit: usize) -> Interruptions {
+        let circuits = &self.state().circuits;
+        let links = &self.dense.links;
+        let passes = |now: f64| links.iter().any(|dense| dense.passages.until(now).next().is_some());
+        let Some(now) = self.inside().filter(|now| passes(*now)) else {
+            return circuits.of(circuit);
+        };
+        let mut circuits = *circuits;
+        let passages = links.each_ref().map(|dense| &dense.passages);
+        circuits.pass(&model.links, &passages, (self.end.time, self.length()), now);
+        circuits.of(circuit)
     }
 }

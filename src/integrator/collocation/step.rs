@@ -73,27 +73,26 @@ impl<const S: usize> Step<'_, S> {
     fn compute<const L: usize, A: Arithmetic>(&self, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, .. } = self.prepared;
-        let mut free = FreeResponse::default();
-        self.set_free_response::<A>(trial, &mut free);
+        let Scratch { free, joined, axial } = scratch;
+        self.set_free_response::<A>(trial, free);
         self.guess::<A>(trial);
-        let Scratch { joined, axial } = scratch;
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
         let mut rounds = model
             .axial()
-            .map(|feedback| Rounds::new((model, feedback, state), (step, collocation), &free, axial));
+            .map(|feedback| Rounds::new((model, feedback, state), (step, collocation), free, axial));
         loop {
             let settled = match &mut rounds {
-                Some(rounds) => rounds.set_free_response::<A>(self.source, trial, &mut free)?,
+                Some(rounds) => rounds.set_free_response::<A>(self.source, trial, free)?,
                 None => true,
             };
             if self.unknowns.count > 0 {
-                let solution = self.solve::<L, A>(&linked, &free, trial)?;
+                let solution = self.solve::<L, A>(&linked, free, trial)?;
                 if settled {
-                    self.judge::<L, A>(&linked, &free, &solution, trial);
+                    self.judge::<L, A>(&linked, free, &solution, trial);
                     break;
                 }
             } else if settled {
-                self.judge_flight::<A>(&free, trial);
+                self.judge_flight::<A>(free, trial);
                 break;
             }
         }
@@ -190,6 +189,7 @@ impl<const S: usize> Step<'_, S> {
         self.set_known::<A>(trial, &mut free.ports);
         free.start_defect = start_defect;
         free.missed_mean = collocation.quadrature * start_defect * start_defect / largest;
+        free.axial = None;
     }
 
     /// Sets the forces that do not depend on the motion, and adds the motion that they cause.

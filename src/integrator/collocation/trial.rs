@@ -74,6 +74,7 @@ pub enum Source {
 /// Room for a trial while it is computed, where a model needs it.
 #[derive(Clone, Debug)]
 pub struct Scratch<const S: usize> {
+    pub(super) free: Box<FreeResponse<S>>,
     pub(super) joined: Joined<S>,
     pub(crate) axial: AxialLoads<S>,
 }
@@ -83,6 +84,7 @@ impl<const S: usize> Scratch<S> {
     pub fn new(model: &Model) -> Self {
         let on_modes = || vec![[0.0; S]; if model.axial().is_some() { model.modes.len() } else { 0 }];
         Self {
+            free: Box::default(),
             joined: Joined::new(model),
             axial: AxialLoads {
                 loads: on_modes(),
@@ -94,7 +96,7 @@ impl<const S: usize> Scratch<S> {
 }
 
 /// Response to all that is known beforehand.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub(crate) struct FreeResponse<const S: usize> {
     /// Motion of the ports.
     pub(crate) ports: [NodalMotion<S>; MAX_PORTS],

@@ -30,6 +30,8 @@ pub(crate) struct Sought<'a> {
     start: &'a LinkState,
     /// Engagement that does not count as contact, m.
     unsure: f64,
+    /// Engagement that need not be found, m: its force is far below the tolerance, or it does not count.
+    negligible: f64,
 }
 
 impl Sought<'_> {
@@ -99,27 +101,27 @@ impl<'a, const S: usize> Locator<'a, S> {
             };
             (lowest, highest, fastest) = (lowest.min(d), highest.max(d), fastest.max(rate.abs()));
         }
+        let reach = DISTANT * (highest - lowest + fastest * length);
+        let is_far = link.engagement(highest + reach, DISTANT * fastest) < 0.0;
+        if is_far {
+            return None;
+        }
+        let (law, unsure) = (link.contact()?, self.unsure(link, start));
         let sought = Sought {
             index,
             link,
-            law: link.contact()?,
+            law,
             start,
-            unsure: self.unsure(link, start),
+            unsure,
+            negligible: law.overlap(self.whole.model.tolerance.at_event).max(unsure),
         };
-        let reach = DISTANT * (highest - lowest + fastest * length);
-        let is_far = link.engagement(highest + reach, DISTANT * fastest) < 0.0;
-        (!is_far).then_some((sought, samples))
+        Some((sought, samples))
     }
 
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
-        // A contact whose force is far below the tolerance need not be found.
-        let negligible = sought.law.overlap(self.whole.model.tolerance.at_event);
         let (ripple, length) = (self.search.swings.ripple(cubic), cubic.length());
-        let (least, unseen) = (
-            negligible.max(sought.unsure),
-            (error + ripple.displacement, ripple.velocity),
-        );
+        let (least, unseen) = (sought.negligible, (error + ripple.displacement, ripple.velocity));
         // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most.
         let steeper = 4.0 * error / length;
         is_clear_along(sought.link, cubic, unseen, least, 0)
