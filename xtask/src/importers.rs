@@ -3,7 +3,7 @@
 //! [`prepare`] writes reference runs and a system of two contacts to `out/conformance`; the tests under `conformance/` compare
 //! with them and each write a row of the table of results there.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -42,7 +42,7 @@ pub fn stages(component: &Path) -> Result<()> {
     stage("Python importers", || python::test(&["conformance/python"], component))?;
     stage("Rust importer", || {
         let mut test = workspace("test")?;
-        test.args(["--test=import", "--test=fmi_rs"]);
+        test.args(rust_tests()?);
         run_command(test.env("RELAY_CONTACT_FMU", component))
     })?;
     stage("importers", || python::report("importers", &[""; 0]))
@@ -73,6 +73,18 @@ fn prepare(component: &Path) -> Result<()> {
     ]);
     write(format!("{FOLDER}/two-contacts.ssp"), &pack(&system)?)?;
     Ok(())
+}
+
+/// Cargo's arguments for all tests of the conformance crate.
+fn rust_tests() -> Result<Vec<String>> {
+    let mut tests = Vec::new();
+    for entry in fs::read_dir(root().join("conformance/tests")).context("cannot list the tests of importers")? {
+        let path = entry?.path();
+        if let (Some("rs"), Some(name)) = (path.extension().and_then(OsStr::to_str), path.file_stem()) {
+            tests.push(format!("--test={}", name.to_string_lossy()));
+        }
+    }
+    Ok(tests)
 }
 
 /// Cargo's command for all packages but benches, whose integrators take long to compile. The selection is the same for each
