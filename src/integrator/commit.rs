@@ -53,7 +53,7 @@ pub(crate) fn commit<const S: usize>(
     state.lengths.last = target.length;
     state.steps += 1;
     state.iterations += trial.iterations;
-    follow_slip(model, (slip, state), cache.collocation(), trial, target.length)
+    follow_slip(model, (slip, state), cache.collocation, trial, target.length)
 }
 
 /// Carries the deviation along that tells what errors grow to.

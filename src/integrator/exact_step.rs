@@ -120,7 +120,7 @@ pub(crate) fn step_ahead(
             state.lengths.long = requested.max(2.0 * remaining);
             return step_until(model, state, workspace, drive, until);
         }
-        let collocation = workspace.long.cache.collocation();
+        let collocation = workspace.long.cache.collocation;
         let propagator = workspace.dense_propagators.get(length, |propagator| {
             propagator.fill(length, start.closed_loop, &model.generator, &collocation.nodes);
         });

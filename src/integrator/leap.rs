@@ -1,6 +1,7 @@
 //! Leaps: first steps after a closing, by the root of the time since.
 
 use crate::error::StepError;
+use crate::integrator::collocation::polynomial::{LONG_BY_ROOT, LONG_BY_TIME};
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::constants::LONGER;
 use crate::integrator::grid::{Target, round_down};
@@ -13,7 +14,7 @@ use crate::state::State;
 impl Stepper<'_> {
     /// The length of a leap from here, s: where a contact has just closed, and nothing that is known ends it.
     pub(super) fn leap_length(&mut self) -> Option<f64> {
-        let longest = self.workspace.leaps.as_ref()?.longest;
+        let longest = self.workspace.longest_leap?;
         let State {
             time, links, lengths, ..
         } = &mut *self.state;
@@ -40,9 +41,9 @@ impl Stepper<'_> {
             recurring: true,
             ..self.grid.cut(length, self.state.time + length)
         };
-        self.workspace.exchange();
+        self.workspace.long.cache.collocation = &LONG_BY_ROOT;
         let done = self.with_trial(|stepper, trial| stepper.try_leap(trial, &target));
-        self.workspace.exchange();
+        self.workspace.long.cache.collocation = &LONG_BY_TIME;
         done
     }
 

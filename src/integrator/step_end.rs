@@ -233,7 +233,7 @@ impl Stepper<'_> {
         let Room { cache, scratch, .. } = room;
         let part = (trial, scratch.axial.loads.as_mut_slice());
         let end = (&ends, &*search.modes);
-        shorten((self.model, self.state), cache.collocation(), part, at / length, end);
+        shorten((self.model, self.state), cache.collocation, part, at / length, end);
         search.looked = None;
     }
 }

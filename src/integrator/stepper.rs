@@ -211,7 +211,7 @@ impl Stepper<'_> {
         } = self;
         let cache = &Rooms::<S>::room(*workspace).cache;
         state.force_error.add(trial.error.with(passing), model.force_scale);
-        recorder.note_step((*model, &mut **state), cache.collocation(), trial, target, &passages);
+        recorder.note_step((*model, &mut **state), cache.collocation, trial, target, &passages);
         let slip = commit(model, state, drive, cache, trial, target);
         if let (Some(dense), Some(slip)) = (&mut recorder.dense, slip) {
             dense.slip = slip;

@@ -1,7 +1,5 @@
 //! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
 
-use std::mem;
-
 use bytemuck::zeroed_box;
 
 use crate::beam::mode::ModeStates;
@@ -13,7 +11,7 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::{Cache, Left, OF_LONG, OF_SHORT};
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::part::{Instant, Whole};
-use crate::integrator::collocation::polynomial::{Collocation, LONG_BY_ROOT, LONG_BY_TIME, SHORT_BY_TIME};
+use crate::integrator::collocation::polynomial::{Collocation, LONG_BY_TIME, SHORT_BY_TIME};
 use crate::integrator::collocation::trial::{Scratch, Trial};
 use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
@@ -39,8 +37,8 @@ pub const LENGTHS: usize = 8;
 pub struct Workspace {
     short: Room<SHORT>,
     pub(crate) long: Room<LONG>,
-    /// For leaps, where the model allows them.
-    pub(crate) leaps: Option<Leaps>,
+    /// Longest leap, s, where the model allows them.
+    pub(crate) longest_leap: Option<f64>,
     /// The half steps of the energy balance.
     pub(crate) half: Box<Trial<LONG>>,
     pub(crate) search: Search,
@@ -54,32 +52,14 @@ pub struct Workspace {
     pub events: Events,
 }
 
-/// First steps after a closing by the root of time.
-#[derive(Clone, Debug)]
-pub(crate) struct Leaps {
-    cache: Box<Cache<LONG>>,
-    /// The longest one, s.
-    pub(crate) longest: f64,
-}
-
-impl Leaps {
-    /// For a model whose contact force is smooth by the root of the time since a closing, and all that happens after it.
-    fn new(model: &Model) -> Option<Self> {
-        let is_smooth = |law: &Power| (2.0 * law.exponent).fract() == 0.0;
-        let mut laws = model.links.iter().filter_map(|link| link.contact()?.power());
-        if !laws.all(is_smooth) || model.axial().is_some() || model.friction().is_some() {
-            return None;
-        }
-        let longest = model
-            .modes
-            .iter()
-            .map(ModeOverStep::longest_by_root)
-            .fold(f64::INFINITY, f64::min);
-        Some(Self {
-            cache: Box::new(Cache::new(model, &OF_LONG, &LONG_BY_ROOT)),
-            longest,
-        })
-    }
+/// See [`Workspace::longest_leap`]: leaps are for a model whose contact force is smooth by the root of the time since a closing, and
+/// all that happens after it.
+fn longest_leap(model: &Model) -> Option<f64> {
+    let is_smooth = |law: &Power| (2.0 * law.exponent).fract() == 0.0;
+    let mut laws = model.links.iter().filter_map(|link| link.contact()?.power());
+    let leaps = laws.all(is_smooth) && model.axial().is_none() && model.friction().is_none();
+    let longest = model.modes.iter().map(ModeOverStep::longest_by_root);
+    leaps.then(|| longest.fold(f64::INFINITY, f64::min))
 }
 
 /// For steps with `S` nodes.
@@ -126,7 +106,7 @@ impl<const S: usize> Room<S> {
             model,
             state,
             drive,
-            collocation: self.cache.collocation(),
+            collocation: self.cache.collocation,
             trial,
             axial: &self.scratch.axial.loads,
             length,
@@ -140,7 +120,7 @@ impl Workspace {
         let lengths = if model.closed_loop.is_some() { 2 * LENGTHS } else { 0 };
         let propagators = lengths * (size_of::<Propagator>() + model.modes.len() * size_of::<[TipAtNodes; 2]>());
         let trials = size_of::<Trial<SHORT>>() + 2 * size_of::<Trial<LONG>>();
-        Cache::<SHORT>::size(model) + 2 * Cache::<LONG>::size(model) + propagators + trials
+        Cache::<SHORT>::size(model) + Cache::<LONG>::size(model) + propagators + trials
     }
 
     /// Allocates for the model.
@@ -153,7 +133,7 @@ impl Workspace {
         Self {
             short: Room::new(model, &OF_SHORT, &SHORT_BY_TIME),
             long: Room::new(model, &OF_LONG, &LONG_BY_TIME),
-            leaps: Leaps::new(model),
+            longest_leap: longest_leap(model),
             half: zeroed_box(),
             search: Search {
                 modes: zeroed_box(),
@@ -166,13 +146,6 @@ impl Workspace {
             dense_propagators: ByLength::new(lengths, || DensePropagator::room(oscillators.unwrap_or_default())),
             former: Motion::at_rest(model, 0.0),
             events: Events::new(),
-        }
-    }
-
-    /// Exchanges the coefficients of long steps with those of leaps.
-    pub(crate) fn exchange(&mut self) {
-        if let Some(leaps) = &mut self.leaps {
-            mem::swap(&mut leaps.cache, &mut self.long.cache);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use bytemuck::Zeroable;
+use bytemuck::allocation::zeroed_vec;
 
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
@@ -27,7 +27,8 @@ pub static OF_LONG: Home<Left<LONG>> = Home::new();
 #[derive(Clone, Debug)]
 pub struct Cache<const S: usize> {
     left: Shared<Left<S>>,
-    collocation: &'static Collocation<S>,
+    /// The polynomials.
+    pub(crate) collocation: &'static Collocation<S>,
     /// For recurring lengths, and first for the last other one.
     places: Store<S>,
     /// While coefficients are computed: for each response, and for one mode.
@@ -50,16 +51,16 @@ pub struct Prepared<'a, const S: usize> {
 impl<const S: usize> Cache<S> {
     /// With what another simulation of the same modes has left, or allocated for the model.
     pub fn new(model: &Model, home: &'static Home<Left<S>>, collocation: &'static Collocation<S>) -> Self {
-        let (left, basis) = (Shared::of(home), Basis::of(model, collocation.variable));
+        let (left, basis) = (Shared::of(home), Basis::of(model));
         let places = match left.take(|places| places.is_of(&basis)) {
             Some(mut places) => {
-                places.turn(&model.generator, &collocation.nodes);
+                places.turn(&model.generator);
                 places
             }
             None => Store::for_model(basis, model),
         };
         Self {
-            sums: vec![Sum::zeroed(); Store::<S>::sums(model)],
+            sums: zeroed_vec(Store::<S>::sums(model)),
             left,
             collocation,
             places,
@@ -72,16 +73,11 @@ impl<const S: usize> Cache<S> {
         Store::<S>::sums(model) * size_of::<Sum<S>>() + Store::<S>::size(model)
     }
 
-    /// The polynomials.
-    pub fn collocation(&self) -> &'static Collocation<S> {
-        self.collocation
-    }
-
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
         let collocation = self.collocation;
-        let place = self.places.place(length, recurring);
-        if self.places.length(place).to_bits() != length.to_bits() {
+        let place = self.places.place(length, recurring, collocation);
+        if !self.places.has(place, length, collocation) {
             self.places.fill(place, length, model, collocation, &mut self.sums);
         }
         let step = self.places.view(place);
@@ -94,7 +90,7 @@ impl<const S: usize> Cache<S> {
 
     /// The coefficients for a length, if they are known.
     pub fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
-        self.places.known(length, recurring)
+        self.places.known(length, recurring, self.collocation)
     }
 }
 

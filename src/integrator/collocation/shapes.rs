@@ -11,10 +11,9 @@ use crate::math::simd::Arithmetic;
 pub const MAX_SHAPES: usize = LONG + 1;
 
 /// What the polynomials of a step are polynomials of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variable {
     /// Time.
-    #[default]
     Time,
     /// The root of the time since the start: after a closing the dissipative part of the force starts like it.
     Root,

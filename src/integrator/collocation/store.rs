@@ -26,16 +26,23 @@ const FREE: usize = 64;
 /// The same of fractions of communication steps. Cost.
 const PARTS: usize = 32;
 
+/// The same of leaps, which are free steps by the root of time. Cost.
+const LEAPS: usize = 32;
+
 /// All of them.
-const SLOTS: usize = FREE + PARTS;
+const SLOTS: usize = FREE + PARTS + LEAPS;
 
 /// The slot of a length. Those of free steps, 1 and 1.5 times powers of two, have neighbouring ones, and so have dyadic fractions of
 /// another length, which start anywhere (Fibonacci hashing).
-fn slot(length: f64) -> usize {
+fn slot(length: f64, variable: Variable) -> usize {
     let bits = length.to_bits();
     let (octave, mantissa) = (bits >> 51, bits << 13);
+    let free = usize::try_from(octave).unwrap_or_default();
+    if variable == Variable::Root {
+        return FREE + PARTS + free % LEAPS;
+    }
     if mantissa == 0 {
-        return usize::try_from(octave).unwrap_or_default() % FREE;
+        return free % FREE;
     }
     let start = mantissa.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - PARTS.ilog2());
     FREE + usize::try_from((octave >> 1) + start).unwrap_or_default() % PARTS
@@ -51,18 +58,16 @@ pub(super) struct Basis {
     /// Damping time of the contact, s, where it rubs.
     rubbing: Option<f64>,
     portable: bool,
-    variable: Variable,
 }
 
 impl Basis {
-    pub(super) fn of(model: &Model, variable: Variable) -> Self {
+    pub(super) fn of(model: &Model) -> Self {
         Self {
             modes: model.modes.clone(),
             ports: model.ports.clone(),
             axial: model.axial().is_some(),
             rubbing: model.friction().map(|_| model.law().damping()),
             portable: matches!(model.simd, Simd::Portable),
-            variable,
         }
     }
 }
@@ -72,16 +77,24 @@ impl Basis {
 #[derive(Debug, Default)]
 pub(crate) struct Store<const S: usize> {
     basis: Basis,
-    lengths: Vec<f64>,
+    places: Vec<Place<S>>,
     rows: Vec<NodeRows<S>>,
     responses: Vec<Response<S>>,
     columns: Vec<ModeColumns<S>>,
     following: Vec<Nodal<S>>,
     ends: Vec<EndGroup<S>>,
-    turns: Vec<Turns<S>>,
     sizes: Sizes,
     /// The place of each slot that a recurring length may have by its hash; 0: none yet.
     of_slot: Vec<u8>,
+}
+
+/// What every place has one of. Each reserved room costs a page of memory, however little of it is used.
+#[derive(Clone, Debug)]
+struct Place<const S: usize> {
+    /// Length of the step, s; 0: none yet.
+    length: f64,
+    collocation: &'static Collocation<S>,
+    turns: Turns<S>,
 }
 
 /// How many there are of each in a place.
@@ -130,13 +143,12 @@ impl Sizes {
 
     /// What a place takes of memory, bytes.
     fn bytes<const S: usize>(&self) -> usize {
-        size_of::<f64>()
+        size_of::<Place<S>>()
             + self.rows * size_of::<NodeRows<S>>()
             + self.responses * size_of::<Response<S>>()
             + self.columns * size_of::<ModeColumns<S>>()
             + self.following * size_of::<Nodal<S>>()
             + self.ends * size_of::<EndGroup<S>>()
-            + size_of::<Turns<S>>()
     }
 }
 
@@ -162,20 +174,27 @@ impl<const S: usize> Store<S> {
     }
 
     /// The coefficients for a length, if they are known.
-    pub(super) fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
-        let slot = self.of_slot.get(slot(length)).filter(|_| recurring);
+    pub(super) fn known(
+        &self,
+        length: f64,
+        recurring: bool,
+        collocation: &Collocation<S>,
+    ) -> Option<StepCoefficients<'_, S>> {
+        let slot = self
+            .of_slot
+            .get(slot(length, collocation.variable))
+            .filter(|_| recurring);
         let place = slot.map_or(0, |place| usize::from(*place));
-        let own = self.lengths.get(place)?;
-        (own.to_bits() == length.to_bits()).then(|| self.view(place))
+        self.has(place, length, collocation).then(|| self.view(place))
     }
 
     /// The place for the coefficients of a length, `recurring`: one that is kept.
-    pub(super) fn place(&mut self, length: f64, recurring: bool) -> usize {
-        if self.lengths.is_empty() {
+    pub(super) fn place(&mut self, length: f64, recurring: bool, collocation: &'static Collocation<S>) -> usize {
+        if self.places.is_empty() {
             // That of a length that does not recur.
-            self.add();
+            self.add(collocation);
         }
-        let slot = slot(length);
+        let slot = slot(length, collocation.variable);
         let Some(place) = self.of_slot.get(slot).filter(|_| recurring) else {
             return 0;
         };
@@ -183,7 +202,7 @@ impl<const S: usize> Store<S> {
             return usize::from(*place);
         }
         // There is one for each slot.
-        let place = self.add();
+        let place = self.add(collocation);
         if let (Some(entry), Ok(place)) = (self.of_slot.get_mut(slot), u8::try_from(place)) {
             *entry = place;
         }
@@ -195,44 +214,48 @@ impl<const S: usize> Store<S> {
         let places = SLOTS + 1;
         Self {
             basis,
-            lengths: Vec::with_capacity(places),
+            places: Vec::with_capacity(places),
             rows: Vec::with_capacity(places * sizes.rows),
             responses: Vec::with_capacity(places * sizes.responses),
             columns: Vec::with_capacity(places * sizes.columns),
             following: Vec::with_capacity(places * sizes.following),
             ends: Vec::with_capacity(places * sizes.ends),
-            turns: Vec::with_capacity(places),
             sizes,
             of_slot: vec![0; SLOTS],
         }
     }
 
     /// Makes it one for steps with this generator.
-    pub(super) fn turn(&mut self, generator: &Generator, nodes: &Nodal<S>) {
-        for (turns, length) in self.turns.iter_mut().zip(&self.lengths) {
-            *turns = Turns::NONE;
-            turns.fill(generator, *length, nodes);
+    pub(super) fn turn(&mut self, generator: &Generator) {
+        for place in &mut self.places {
+            place.turns = Turns::NONE;
+            place.turns.fill(generator, place.length, &place.collocation.nodes);
         }
     }
 
     /// Makes a place, for no length yet; returns its index. Out of line, for the sake of the stack.
     #[inline(never)]
-    fn add(&mut self) -> usize {
-        let place = self.lengths.len();
+    fn add(&mut self, collocation: &'static Collocation<S>) -> usize {
+        let place = self.places.len();
         let (sizes, places) = (&self.sizes, place + 1);
         self.rows.resize_with(places * sizes.rows, NodeRows::zeroed);
         self.responses.resize_with(places * sizes.responses, Response::zeroed);
         self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
         self.following.resize(places * sizes.following, [0.0; S]);
         self.ends.resize_with(places * sizes.ends, EndGroup::zeroed);
-        self.turns.push(Turns::NONE);
-        self.lengths.push(0.0);
+        self.places.push(Place {
+            length: 0.0,
+            collocation,
+            turns: Turns::NONE,
+        });
         place
     }
 
-    /// The length of a place, s; 0: none.
-    pub(super) fn length(&self, place: usize) -> f64 {
-        self.lengths.get(place).copied().unwrap_or_default()
+    /// Whether a place has the coefficients for a length.
+    pub(super) fn has(&self, place: usize, length: f64, collocation: &Collocation<S>) -> bool {
+        self.places.get(place).is_some_and(|own| {
+            own.length.to_bits() == length.to_bits() && own.collocation.variable == collocation.variable
+        })
     }
 
     /// What is in a place.
@@ -240,12 +263,13 @@ impl<const S: usize> Store<S> {
     #[expect(clippy::indexing_slicing, reason = "a place that is there")]
     pub(super) fn view(&self, place: usize) -> StepCoefficients<'_, S> {
         let sizes = &self.sizes;
+        let Place { length, turns, .. } = &self.places[place];
         StepCoefficients {
-            length: self.lengths[place],
+            length: *length,
             columns: part(&self.columns, place, sizes.columns),
             following: part(&self.following, place, sizes.following),
             end: part(&self.ends, place, sizes.ends),
-            turns: &self.turns[place],
+            turns,
             responses: part(&self.responses, place, sizes.responses),
             rows: part(&self.rows, place, sizes.rows),
             of_port: &sizes.of_port,
@@ -260,13 +284,14 @@ impl<const S: usize> Store<S> {
         place: usize,
         length: f64,
         model: &Model,
-        collocation: &Collocation<S>,
+        collocation: &'static Collocation<S>,
         sums: &mut [Sum<S>],
     ) {
         let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
         let sizes = &self.sizes;
-        self.lengths[place] = length;
-        self.turns[place].fill(&model.generator, length, &collocation.nodes);
+        let own = &mut self.places[place];
+        (own.length, own.collocation) = (length, collocation);
+        own.turns.fill(&model.generator, length, &collocation.nodes);
         let mut modes = Modes {
             rows: part_mut(&mut self.rows, place, sizes.rows),
             of_port: &sizes.of_port,
@@ -290,13 +315,12 @@ impl<const S: usize> Clone for Store<S> {
     /// With the same room, as steps do not allocate.
     fn clone(&self) -> Self {
         let mut same = Self::reserved(self.basis.clone(), self.sizes.clone());
-        same.lengths.extend_from_slice(&self.lengths);
+        same.places.extend_from_slice(&self.places);
         same.rows.extend_from_slice(&self.rows);
         same.responses.extend_from_slice(&self.responses);
         same.columns.extend_from_slice(&self.columns);
         same.following.extend_from_slice(&self.following);
         same.ends.extend_from_slice(&self.ends);
-        same.turns.extend_from_slice(&self.turns);
         same.of_slot.clone_from(&self.of_slot);
         same
     }
@@ -385,12 +409,12 @@ mod tests {
     #[test]
     fn lengths_that_alternate_have_slots_of_their_own() {
         let octaves = |count: i32| (-40..count - 40).map(|octave| f64::from(octave).exp2());
-        let free = octaves(32).flat_map(|length| [length, 1.5 * length].map(slot));
+        let free = octaves(32).flat_map(|length| [length, 1.5 * length].map(|length| slot(length, Variable::Time)));
         let free: BTreeSet<usize> = free.collect();
         assert_eq!(free.len(), FREE);
         for k in 0..1000 {
             let size = 1.0 + (0.3 + f64::from(k)) / 1000.7;
-            let parts: BTreeSet<usize> = octaves(32).map(|octave| slot(size * octave)).collect();
+            let parts: BTreeSet<usize> = octaves(32).map(|octave| slot(size * octave, Variable::Time)).collect();
             assert!(parts.len() == PARTS && parts.is_disjoint(&free), "{size}");
         }
     }

@@ -42,7 +42,6 @@
 
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::LONG_BY_TIME;
-use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::grid::Target;
@@ -66,23 +65,21 @@ where
     Workspace: Rooms<S>,
 {
     let half = 0.5 * target.length;
-    let polynomial = Rooms::<S>::room(workspace).cache.collocation();
+    let polynomial = Rooms::<S>::room(workspace).cache.collocation;
     let variable = polynomial.variable;
-    let long = &workspace.long.cache;
+    let first = workspace.long.cache.collocation;
     // Of a leap only the first half begins where its contact has closed.
-    let nodes = [long.collocation().nodes, LONG_BY_TIME.nodes];
+    let in_half = [first, &LONG_BY_TIME];
     let in_halves = |values: &Nodal<S>| {
-        [(0.0, nodes[0]), (0.5, nodes[1])]
-            .map(|(start, nodes)| nodes.map(|node| polynomial.interpolate(values, variable.place(start + 0.5 * node))))
+        [(0.0, in_half[0]), (0.5, in_half[1])].map(|(start, half)| {
+            half.nodes
+                .map(|node| polynomial.interpolate(values, variable.place(start + 0.5 * node)))
+        })
     };
     let halves: [[Nodal<LONG>; 2]; MAX_LINKS] = trial.links.map(|nodes| in_halves(&nodes.forces));
     let mut at: State = *state;
     let mut work = 0.0;
-    for half_step in 0..2 {
-        let leaves = half_step > 0 && variable == Variable::Root;
-        if leaves {
-            workspace.exchange();
-        }
+    for (half_step, collocation) in in_half.into_iter().enumerate() {
         let Workspace {
             long: Room { cache, scratch, .. },
             half: motion,
@@ -91,6 +88,7 @@ where
         for (nodes, halves) in motion.links.iter_mut().zip(&halves) {
             nodes.forces = *halves.get(half_step)?;
         }
+        cache.collocation = collocation;
         let prepared = cache.prepare(at.time, half, target.recurring, model);
         let computed = compute(model, &at, drive, prepared, Source::Given, motion, scratch);
         work += half * prepared.collocation.mean(&powers(model, state, motion));
@@ -98,9 +96,7 @@ where
         for (at, nodes) in at.links.iter_mut().zip(&motion.links) {
             (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
         }
-        if leaves {
-            workspace.exchange();
-        }
+        cache.collocation = first;
         computed?;
         at.time += half;
         for (displacement, velocity) in at.displacements.iter_mut().zip(&drive.velocities) {
