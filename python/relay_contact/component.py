@@ -10,6 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import contextmanager
 from contextvars import ContextVar
 from copy import copy
+from ctypes import c_int, c_size_t, c_void_p
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
@@ -25,7 +26,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path, shown
 from relay_contact.spring import OF_FILES, applied, is_entry
-from relay_contact.stepping import drive
 
 DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
 """Paths and numbers, by which two warnings may differ that say the same."""
@@ -36,6 +36,8 @@ KEPT: ContextVar[dict[str, str] | None] = ContextVar("warnings", default=None)
 
 SETTABLE = ("parameter", "input")
 LARGEST_REAL = sys.float_info.max
+FOLLOW = "relayContactFollow"
+"""Function of the library, beside those of FMI, that does many communication steps."""
 
 Array = NDArray[np.float64]
 Value = float | str
@@ -259,10 +261,11 @@ def free(instances: list[Reused]) -> None:
 class Contact:
     """An instance of the component, its variables known by name, for a `with` block that gives it back."""
 
-    def __init__(self, component: Component, messages: list[str] | None = None) -> None:
-        """Take an instance that is idle, or a new one; errors and warnings are appended to the messages."""
+    def __init__(self, component: Component) -> None:
+        """Take an instance that is idle, or a new one."""
         self.component = component
-        self.messages = [] if messages is None else messages
+        self.messages: list[str] = []
+        """Errors and warnings."""
         self.warnings: list[str] = []
         """Those messages that are warnings, whatever the status of the call that logged them."""
         self.told = 0
@@ -349,9 +352,31 @@ class Contact:
     def drive(self, time: ArrayLike, courses: Mapping[str, ArrayLike], watched: Sequence[str] = ()) -> dict[str, Array]:
         """Have inputs follow straight lines between points of time, a communication step each.
 
-        Return what is watched after each step. A time given twice is a jump; the first is that already reached.
+        Return what is watched after each step. A time given twice is a jump; the first is that already reached. A call
+        from Python takes longer than a step: here the component steps by itself, and Python is free for something else.
         """
-        return drive(self, time, courses, watched)
+        times = np.ascontiguousarray(time, dtype=np.float64)
+        given = np.zeros((len(times), len(courses)))
+        for column, course in enumerate(courses.values()):
+            given[:, column] = course
+        inputs, outputs = (np.array(self.references(*names), dtype=np.uint32) for names in (courses, watched))
+        rows = np.zeros((max(0, len(times) - 1), len(watched)))
+        try:
+            # A new object, with types of its own, as other threads have theirs.
+            follow = self.fmu.dll[FOLLOW]
+        except AttributeError as error:
+            raise RelayContactError(f"{self.component.path} is older than this package: it has no {FOLLOW}") from error
+        some = c_void_p, c_size_t
+        follow.argtypes, follow.restype = (c_void_p, *some, *some, c_void_p, *some, c_void_p), c_int
+        status = follow(
+            self.fmu.component, times.ctypes.data, len(times), inputs.ctypes.data, len(inputs), given.ctypes.data,
+            outputs.ctypes.data, len(outputs), rows.ctypes.data,
+        )  # fmt: skip
+        if status > fmi2.fmi2Warning:
+            raise FMICallException(function=FOLLOW, status=status)
+        self.tell()
+        taken = np.count_nonzero(np.diff(times))
+        return {name: rows[:taken, column] for column, name in enumerate(watched)}
 
     def get(self, name: str) -> float:
         """Give the value of any variable, of an enumeration its number."""
