@@ -5,7 +5,6 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextvars import ContextVar
-from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -60,19 +59,13 @@ def side_by_side(
         return work(item)
 
     jobs = [partial(contextvars.copy_context().run, own, *each) for each in zip(items, kept, strict=True)]
-    found = one_by_one(jobs, tell) if used == 1 else on_threads(jobs, used, tell)
+    found: list[Found] = [] if used == 1 else on_threads(jobs, used, tell)
+    for job in jobs if used == 1 else ():
+        found.append(job())
+        tell()
     if (whole := KEPT.get()) is not None:
         for kind, message in (pair for each in kept for pair in each.items()):
             whole.setdefault(kind, message)
-    return found
-
-
-def one_by_one(jobs: Sequence[Callable[[], Found]], tell: Callable[[], object]) -> list[Found]:
-    """Return what jobs give, done by this thread."""
-    found = []
-    for job in jobs:
-        found.append(job())
-        tell()
     return found
 
 
@@ -114,16 +107,24 @@ def run_many(
     read = cache(Scene.read)
     names = [component.name(name) for name in outputs or []]
 
-    def row(case: Case) -> Row:
+    def row(case: Case) -> tuple[dict[str, Value], dict[str, float], dict[str, str]]:
         given, changes = case if isinstance(case, tuple) else (case, {})
-        row = Row(given.title if isinstance(given, Scene) else str(given))
+        changed: dict[str, Value] = {}
+        found: dict[str, float] = {}
+        told = {"scene": given.title if isinstance(given, Scene) else str(given), "warning": "", "error": ""}
         try:
-            row.changes |= {component.settable(name): value for name, value in changes.items()}
-            scene = given if isinstance(given, Scene) else read(given)
-            at_stop(component, scene.changed(component, changes), names, row)
+            changed |= {component.settable(name): value for name, value in changes.items()}
+            scene = (given if isinstance(given, Scene) else read(given)).changed(component, changes)
+            points = scene.points()
+            inputs = scene.inputs(points)
+            first = {name: float(course[0]) for name, course in inputs.items()}
+            with component.started(scene.values | first) as contact, contact.explained():
+                contact.drive(points, inputs)
+                found |= {name: contact.get(name) for name in names or map(component.name, scene.outputs)}
+                told["warning"] = " ".join(contact.warnings)
         except (RelayContactError, OSError) as error:
-            row.error = str(error)
-        return row
+            told["error"] = str(error)
+        return changed, found, told
 
     done = 0
 
@@ -137,39 +138,9 @@ def run_many(
     form = "{desc} {percentage:3.0f} %|{bar}| {n} of {total} scenes"
     with progress_bar(len(cases), form, progress is True, desc="simulated") as bar:
         rows = side_by_side(row, cases, workers, tell)
-    columns = dict.fromkeys([
-        "scene", *(name for each in rows for name in each.changes), *(name for each in rows for name in each.outputs),
-        "warning", "error",
-    ])  # fmt: skip
-    table = pd.DataFrame([each.cells for each in rows], columns=list(columns))
+    named = [name for part in (0, 1) for each in rows for name in each[part]]
+    columns = dict.fromkeys(["scene", *named, "warning", "error"])
+    table = pd.DataFrame([{**changed, **found, **told} for changed, found, told in rows], columns=list(columns))
     shown = units(component.description)
     table.attrs["units"] = {name: shown[name].si for name in columns if name in shown}
     return table
-
-
-@dataclass
-class Row:
-    """A row of a table of many scenes."""
-
-    scene: str
-    changes: dict[str, Value] = field(default_factory=dict)
-    outputs: dict[str, float] = field(default_factory=dict)
-    warning: str = ""
-    error: str = ""
-
-    @property
-    def cells(self) -> dict[str, Value]:
-        """The cells by column."""
-        told: dict[str, Value] = {"scene": self.scene, "warning": self.warning, "error": self.error}
-        return {**self.changes, **self.outputs, **told}
-
-
-def at_stop(component: Component, scene: Scene, outputs: list[str], row: Row) -> None:
-    """Run a scene; fill in its outputs at the stop, and warnings."""
-    points = scene.points()
-    inputs = scene.inputs(points)
-    first = {name: float(course[0]) for name, course in inputs.items()}
-    with component.started(scene.values | first) as contact, contact.explained():
-        contact.drive(points, inputs)
-        row.outputs |= {name: contact.get(name) for name in outputs or map(component.name, scene.outputs)}
-        row.warning = " ".join(contact.warnings)
