@@ -22,10 +22,10 @@ import numpy as np
 from tqdm import tqdm
 
 from circuit import Circuit, State
-from common import parser, read_arguments, save
+from common import legend_beside, parser, read_arguments, save
 from ngspice import Course, NgSpice
 from relay_contact import Array, Component, Contact, Scene, write_table
-from relay_contact.figures import BLUE, GREY, ORANGE, RED, SKY, legend_beside
+from relay_contact.figures import BLUE, GREY, ORANGE, RED, SKY
 
 CIRCUIT = Circuit()
 PERIOD = 1e-3  # s, of the vibration

@@ -8,6 +8,7 @@ import matplotlib as mpl
 
 mpl.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from relay_contact import fmu_path
@@ -55,6 +56,11 @@ def within(low: float, high: float, unit: str) -> Callable[[str], float]:
         return value
 
     return number
+
+
+def legend_beside(axes: Axes) -> None:
+    """Put the legend to the right of a panel."""
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", frameon=False)
 
 
 def save(figure: Figure, path: Path, dpi: int = 150) -> None:

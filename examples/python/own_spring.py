@@ -28,7 +28,7 @@ from tqdm import tqdm
 from common import parser, read_arguments, save
 from own_spring_elements import Basis, Drawing, Elements, missing, segments
 from relay_contact import Array, Component, Contact, Value
-from relay_contact.figures import BLACK, BLUE, GRAVITY, ORANGE, acceleration_in_g
+from relay_contact.figures import BLACK, BLUE, GRAVITY, ORANGE
 from relay_contact.qualification.level import threshold
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.standards import Contacts
@@ -196,7 +196,8 @@ def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response
         yscale="log", xlim=(0, BAND[1]), xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]",
         title="Sine vibration that opens the contact",
     )  # fmt: skip
-    acceleration_in_g(levels)
+    scale: Any = (lambda a: a / GRAVITY, lambda a: a * GRAVITY)
+    levels.secondary_yaxis("right", functions=scale).set_ylabel("base acceleration [g]")
     levels.legend(fontsize="small")
     for axes in (bars, levels):
         axes.grid(alpha=0.3)

@@ -10,9 +10,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from common import parser, read_arguments, save
+from common import legend_beside, parser, read_arguments, save
 from relay_contact import Array, Component, Scene, run, write_table
-from relay_contact.figures import BLACK, BLUE, ORANGE, RED, SKY, legend_beside
+from relay_contact.figures import BLACK, BLUE, ORANGE, RED, SKY
 
 PRELOAD = ["preload.force", "preload.contactStiffness", "preload.frequency"]
 COLUMNS = ["time", "base.acceleration", "contact.force", "contact.resistance"]

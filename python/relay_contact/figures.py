@@ -1,11 +1,6 @@
-"""Colours, scales and numbers of all figures."""
+"""Colours and numbers of all figures."""
 
 import math
-from typing import TYPE_CHECKING, Any
-
-# What only computes takes the constants from here, and does not wait for matplotlib.
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 GRAVITY = 9.80665  # m/s2
 # Colours of Okabe and Ito, told apart also by the colour-blind.
@@ -28,17 +23,3 @@ def three(value: float) -> str:
             break
     places = digits - 1 - math.floor(math.log10(abs(rounded)))
     return f"{rounded:.{max(places, 0)}f}"
-
-
-def legend_beside(axes: "Axes") -> None:
-    """Put the legend to the right of a panel."""
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small", frameon=False)
-
-
-def acceleration_in_g(axes: "Axes", vertical: bool = True) -> None:
-    """Give an axis of base acceleration in m/s2 a second scale in g."""
-    functions: Any = (lambda a: a / GRAVITY, lambda a: a * GRAVITY)
-    if vertical:
-        axes.secondary_yaxis("right", functions=functions).set_ylabel("base acceleration [g]")
-    else:
-        axes.secondary_xaxis("top", functions=functions).set_xlabel("base acceleration [g]")
