@@ -9,20 +9,19 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from component import COMPONENT
+from qualified import CONTACTS, described, judged
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
-from relay_contact.qualification import FEW, Relay, Standard, assessment, qualify, synthesis
+from relay_contact.qualification import Relay, Standard, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
-from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import Response, respond
-from relay_contact.qualification.standards import Contacts, Monitor, Recorded
+from relay_contact.qualification.standards import Recorded
 from relay_contact.qualification.trials import Piece, Specimen, eased, noise, pieces
 
 G = 9.80665
 READ: Any = "from memory"
 PUBLISHED: Values = {"effects.axialForce": "FromPreload"}
 SPECIMEN = Reference(PUBLISHED)
-CONTACTS = Standard.read("MIL-PRF-28776").contacts
 LASTING = CONTACTS.opening
 CALM = Specimen(COMPONENT, PUBLISHED, CONTACTS, respond(COMPONENT, PUBLISHED, CONTACTS.threshold))
 
@@ -62,8 +61,7 @@ def test_pulses_open_the_contact_where_the_second_solution_does(shape: Any) -> N
 def test_a_sine_ends_at_its_last_frequency(tmp_path: Path, where: Any) -> None:  # noqa: ANN401
     """What the double amplitude limits grows with the square of the frequency, between those of the response too."""
     test = Sine("low", "", READ, double_amplitude=1e-2, **where)
-    relay = Relay("r", {"closed": PUBLISHED}, {}, (Model("one", {}, 0.0),), Monitor())
-    (tested,) = assessment.assess(COMPONENT, relay, Standard("own", CONTACTS, (test,)), tmp_path, FEW)
+    (tested,) = judged(described(PUBLISHED), tmp_path, test)
     amplitude = 5e-3 * (2 * np.pi * 12.3) ** 2
     expected = SPECIMEN.force / (abs(SPECIMEN.force_response(12.3)) * amplitude)
     # The level is sought to 1e-4; the indentation, which linear theory has otherwise, is 3e-4 of the overtravel.
@@ -75,9 +73,7 @@ def test_the_tolerance_of_a_pulse_moves_the_margin(tmp_path: Path) -> None:
     """A slow pulse by its peak alone."""
     entries: Any = {"peak": 0.2, "duration": 0.1}
     test = Shock("slow", "", READ, 50.0, 11e-3, tolerance=entries)
-    relay = Relay.read("paper", COMPONENT)
-    relay = replace(relay, models=relay.models[:1], uncertainty={})
-    (tested,) = assessment.assess(COMPONENT, relay, Standard("own", CONTACTS, (test,)), tmp_path, FEW)
+    (tested,) = judged(described(PUBLISHED), tmp_path, test)
     assert tested.margin.tolerance
     low, high = tested.margin.tolerance
     assert low == pytest.approx(tested.margin.margin / 1.2, rel=0.02)
@@ -272,11 +268,8 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     text += "uncertainty.spring.mode.1.participation = 0.1\n"
     relay.write_text(f"{text}axes.lateral = {[-part / 2 for part in parts]}\n")
     test = Shock("shock", "", READ, 500.0, 3e-3)
-    found = assessment.assess(
-        COMPONENT, Relay.read(relay, COMPONENT), Standard("own", CONTACTS, (test, replace(test, name="z", axis="z"))),
-        tmp_path, FEW,
-    )  # fmt: skip
-    normal, lateral, other = found
+    own = Relay.read(relay, COMPONENT)
+    normal, lateral, other = judged(own, tmp_path, test, replace(test, name="z", axis="z"))
     assert (lateral.first.named, lateral.first.axis) == ("shock, lateral axis", "lateral")
     assert lateral.margin.margin == pytest.approx(2 * normal.margin.margin, rel=3e-4)
     # So is the interval, which comes from the participation itself.
@@ -291,8 +284,6 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
 
 
 def test_contacts_have_their_evidence() -> None:
-    assert CONTACTS.weakest_evidence == "read in the standard"
-    assert isinstance(CONTACTS, Contacts)
     sine = Standard.read("MIL-PRF-28776").tests[0]
     # The time of the sweep is from memory, but no verdict depends on it.
     assert sine.weakest_evidence == "read in the standard"

@@ -10,19 +10,10 @@ import pytest
 from scipy.stats import binom
 
 from component import COMPONENT
+from qualified import CONTACTS, described, judged, placed
 from relay_contact import RelayContactWarning, Values, run
 from relay_contact.figures import three
-from relay_contact.qualification import (
-    FEW,
-    Assessment,
-    Finding,
-    Relay,
-    Standard,
-    Tested,
-    assessment,
-    judgement,
-    qualify,
-)
+from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, judgement, qualify
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
@@ -31,12 +22,10 @@ from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
-from relay_contact.qualification.standards import Monitor
 from relay_contact.qualification.trials import Specimen, pieces, steady
 from relay_contact.qualification.words import failures, passes_text
 
 READ: Any = "read in the standard"
-CONTACTS = Standard.read("MIL-PRF-28776").contacts
 SINE = Sine("sine", "", READ, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
 SHOCK = Shock("shock", "", READ, 50.0, 3e-3)
 RANDOM = Random("random", "", READ, ((50.0, 0.02), (2000.0, 0.02)), 6.24, 900.0)
@@ -58,13 +47,7 @@ def drawn(seed: int, spread: float = 0.2) -> Relay:
     names = ["contact.overtravel", "tip.mass", "beam.stiffnessDamping", "beam.thickness"]
     sizes = (1.0, 0.5, 2.0, 0.15)
     uncertainty = {name: Distribution(part=spread * size) for name, size in zip(names, sizes, strict=True)}
-    return Relay(f"relay {seed}", {"closed": values}, uncertainty, (Model("one", {}, 0.0),), Monitor())
-
-
-def judged(relay: Relay, folder: Path, *tests: Asked) -> list[Tested]:
-    """Return what some tests show."""
-    standard = Standard("own", CONTACTS, tests)
-    return assessment.assess(COMPONENT, relay, standard, folder, FEW)
+    return described(values, uncertainty)
 
 
 def varied(relay: Relay, count: int, seed: int) -> list[Values]:
@@ -114,7 +97,7 @@ def test_the_interval_of_a_sine_is_that_of_brute_force(seed: int, beside: float)
 
 def several(relay: Relay, test: Asked, count: int) -> None:
     """Compare the distribution of margins with counts of brute force, at the ends of the interval and between."""
-    position = positions.Position(COMPONENT, relay, "closed", CONTACTS, (test,), relay.models[0])
+    position = placed(relay, test)
     part = judgement.judged(position, test, FEW).margin
     shares = (0.025, 0.16, 0.5, 0.84, 0.975)
     levels = np.quantile(position.margins(test, part.margin).margins, shares, method="hazen")
@@ -135,9 +118,7 @@ def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path:
     """Sine to 96 % of the resonance: the margin falls steeply where the resonance comes nearer."""
     values: Values = {"beam.stiffnessDamping": 5e-6, "contact.damping": 2e-6}
     natural = respond(COMPONENT, values, CONTACTS.threshold).natural
-    relay = Relay(
-        "beside", {"closed": values}, {"beam.thickness": Distribution(part=0.04)}, (Model("one", {}, 0.0),), Monitor()
-    )
+    relay = described(values, {"beam.thickness": Distribution(part=0.04)})
     test = replace(SINE, frequencies=(10.0, 0.96 * natural), acceleration=3.0)
     part = judged(relay, tmp_path, test)[0].margin
 
@@ -160,7 +141,7 @@ def test_verdict_margin_and_text_agree(tmp_path: Path, monkeypatch: pytest.Monke
     relay = drawn(100 + seed, 0.02)
     generator = np.random.default_rng(seed)
     tests = SINE, SHOCK, RANDOM
-    position = positions.Position(COMPONENT, relay, "closed", CONTACTS, tests, relay.models[0])
+    position = placed(relay, *tests)
     margins = [position.linear(position.specimen.response, test) for test in tests]
     levels = generator.choice([0.9, 0.999, 1.001, 1.1], len(tests))
     near = [scaled(test, margin * level) for test, margin, level in zip(tests, margins, levels, strict=True)]
@@ -236,10 +217,10 @@ def test_each_model_is_judged_and_all_have_to_pass(tmp_path: Path, monkeypatch: 
     relay = drawn(8, 0.02)
     (part,) = judged(relay, tmp_path, SHOCK)
     test = replace(SHOCK, acceleration=SHOCK.acceleration * part.margin.margin / 1.1)
-    heavier: Values = {"tip.mass": 3 * float(relay.positions["closed"]["tip.mass"])}
+    heavier: Values = {"tip.mass": 3 * float(relay.positions["own"]["tip.mass"])}
     both = replace(relay, models=(*relay.models, Model("heavier", heavier, 0.01)))
     (whole,) = judged(both, tmp_path, test)
-    alone = replace(relay, positions={"closed": {**relay.positions["closed"], **heavier}}, models=(both.models[1],))
+    alone = replace(relay, positions={"own": {**relay.positions["own"], **heavier}}, models=(both.models[1],))
     (other,) = judged(alone, tmp_path, test)
     assert [each.verdict for each in whole.models] == ["pass", "FAIL"]
     assert whole.models[1] == other.models[0]

@@ -1,23 +1,22 @@
 """`qualify` of a relay with pusher and armature: which part fails first, by closed forms, statics and brute force."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from component import COMPONENT
+from qualified import CONTACTS, described, judged, placed
 from relay_contact import Values
 from relay_contact.component import half_sine, sine
-from relay_contact.qualification import Assessment, Relay, qualify
-from relay_contact.qualification.excitation import Shock, Sine
+from relay_contact.qualification import Assessment, Standard
+from relay_contact.qualification.distributions import Distribution
+from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.judgement import searched, transient
+from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, all_parts
 from relay_contact.qualification.position import Position
-from relay_contact.qualification.standards import Contacts
 
 G = 9.80665
-CONTACTS = Contacts(10e-6, 1e-6, 6.0, 10e-3, "", "from memory")
 ARMATURE: dict[str, float] = {
     "mass": 0.02, "stiffness": 300.0, "returnForce": 0.5, "damping": 0.05, "unbalance": 1.0, "holdForce": 3.0,
     "gapConstant": 3e-4, "restPosition": -3e-4, "corePosition": 1e-4, "stopStiffness": 1e6, "stopRestitution": 0.4,
@@ -31,32 +30,7 @@ LONG = Shock("long", "", "from memory", acceleration=30.0, duration=11e-3)
 
 def position(values: Values, *tests: Asked, current: float = 1.0) -> Position:
     """Return a position of a relay of these parameters."""
-    relay = Relay.read(file_of(values, current), COMPONENT)
-    return Position(COMPONENT, relay, "on", CONTACTS, tests, relay.models[0])
-
-
-FOLDER: list[Path] = []
-
-
-@pytest.fixture(scope="module", autouse=True)
-def folder(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Keep a folder for the files of relays."""
-    FOLDER[:] = [tmp_path_factory.mktemp("relays")]
-
-
-def file_of(values: Values, current: float = 1.0, more: str = "") -> Path:
-    """Write the file of a relay."""
-    groups: dict[str, list[str]] = {"parameters": [], "pusher": [], "armature": []}
-    for name, value in values.items():
-        group, _, rest = name.partition(".")
-        text = f'"{value}"' if isinstance(value, str) else repr(value).lower()
-        if name != "effects.pusher":
-            groups[group if group in groups else "parameters"].append(f"{rest if group in groups else name} = {text}")
-    at = f"\n[[position]]\nname = 'on'\nparameters.coil.relativeCurrent = {current}\n"
-    text = "".join(f"[{name}]\n" + "\n".join(lines) + "\n" for name, lines in groups.items() if lines) + at + more
-    path = FOLDER[0] / f"relay-{abs(hash(text))}.toml"
-    path.write_text(text)
-    return path
+    return placed(described({**values, "coil.relativeCurrent": current}), *tests)
 
 
 def least_level(each: Position, test: Sine) -> float:
@@ -195,48 +169,26 @@ def test_a_shock_takes_an_armature_from_its_stop_where_small_steps_do(duration: 
         assert found * 10 * G == pytest.approx(0.5 / (0.02 * 0.8), rel=5e-3)
 
 
-STANDARD = """
-[contacts]
-opening = 10e-6
-false_make = 1e-6
-voltage = 6.0
-current = 10e-3
-clause = "4"
-evidence = "from memory"
-[[sine]]
-name = "sine"
-clause = "1"
-evidence = "from memory"
-acceleration = 4.0
-steps = [20.0, 100.0]
-[[random]]
-name = "random"
-clause = "2"
-evidence = "from memory"
-density = [[20.0, 0.01], [1000.0, 0.01]]
-rms = 3.13
-duration = 60.0
-[[shock]]
-name = "shock"
-clause = "3"
-evidence = "from memory"
-acceleration = 8.0
-duration = 11e-3
-"""
-UNSURE = "[uncertainty]\narmature.holdForce = 0.1\narmature.unbalance = 0.05\n"
+UNSURE = {"armature.holdForce": Distribution(part=0.1), "armature.unbalance": Distribution(part=0.05)}
+TESTS = (
+    Sine("sine", "1", "from memory", acceleration=4.0, steps=(20.0, 100.0)),
+    Random("random", "2", "from memory", density=((20.0, 0.01), (1000.0, 0.01)), rms=3.13, duration=60.0),
+    Shock("shock", "3", "from memory", acceleration=8.0, duration=11e-3),
+)
 
 
 @pytest.fixture(scope="module")
-def judged(tmp_path_factory: pytest.TempPathFactory) -> Assessment:
+def assessed(tmp_path_factory: pytest.TempPathFactory) -> Assessment:
     """Judge the weakly held relay."""
-    out = tmp_path_factory.mktemp("judged")
-    (out / "standard.toml").write_text(STANDARD)
-    return qualify(file_of(WEAK, more=UNSURE), out / "standard.toml", out=out / "out", quick=True, component=COMPONENT)
+    relay, out = described({**WEAK, "coil.relativeCurrent": 1.0}, UNSURE), tmp_path_factory.mktemp("judged")
+    found = Assessment(relay, Standard("own", CONTACTS, TESTS), judged(relay, out, *TESTS), out)
+    write(found, COMPONENT)
+    return found
 
 
-def test_the_verdict_is_that_of_the_part_that_fails_first(judged: Assessment) -> None:
-    assert [tested.first.kind for tested in judged] == ["sine", "random", "shock"]
-    for tested in judged:
+def test_the_verdict_is_that_of_the_part_that_fails_first(assessed: Assessment) -> None:
+    assert [tested.first.kind for tested in assessed] == ["sine", "random", "shock"]
+    for tested in assessed:
         own = tested.margin
         assert set(own.parts) == {CONTACT, PUSHER, CORE}
         assert own.margin == min(part.margin for part in own.parts.values())
@@ -253,20 +205,20 @@ def test_the_verdict_is_that_of_the_part_that_fails_first(judged: Assessment) ->
             "armature.holdForce", "chance of the largest dip",
         )  # fmt: skip
     # The hold force, less what it has to carry, is what the level follows: the interval in closed form.
-    slow = judged["sine"].margin
+    slow = assessed["sine"].margin
     with COMPONENT.started(WEAK) as contact:
         held = contact.get("step.minimumStopForce")
     assert slow.high / slow.margin - 1 == pytest.approx(np.hypot(0.1 * 3.0 / held, 0.05), rel=0.08)
 
 
-def test_page_and_tables_name_the_parts(judged: Assessment) -> None:
-    page = (judged.folder / "qualification.html").read_text(encoding="utf-8")
+def test_page_and_tables_name_the_parts(assessed: Assessment) -> None:
+    page = (assessed.folder / "qualification.html").read_text(encoding="utf-8")
     texts = ("The relay with its contacts, its armature and the pusher", "the part that fails first", f"· {PUSHER}",
              "armature leaves its core", "cN at its core", "armature that moves a pusher")  # fmt: skip
     for text in texts:
         assert text in page, text
     assert "as in a rigid relay" not in page
-    table = judged.table
+    table = assessed.table
     assert (table[f"{CORE} margin"] < table["margin"] * (1 + 4e-4)).all()
     assert (table["fails first"] == CORE).all()
     assert (table["closed contact least force"] > 0).any()

@@ -6,10 +6,11 @@ from typing import Any
 import pytest
 
 from component import COMPONENT, ROOT
-from relay_contact import RelayContactError
-from relay_contact.qualification import Relay, Standard
+from qualified import described, placed
+from relay_contact import RelayContactError, Values
+from relay_contact.qualification import Relay
+from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Shock
-from relay_contact.qualification.position import Position
 
 SEGMENTS = ROOT / "scenes/springs/tapered-cube.toml"
 MODES = ROOT / "scenes/springs/tapered-cube-modes.toml"
@@ -57,16 +58,17 @@ def test_an_entry_is_that_of_the_file(tmp_path: Path, name: str, old: str, new: 
 
 def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
     """A slow shock: the preload goes with the cube of the thickness, what is shaken with its first power."""
-    file = tmp_path / "relay.toml"
-    text = f"parameters.beam.file = '{SEGMENTS}'\nparameters.beam.stiffnessDamping = 5e-6\n"
     rigid = tmp_path / "rigid.toml"
     rigid.write_text("\n".join(line for line in SEGMENTS.read_text().splitlines() if "clamp" not in line))
-    text = text.replace(str(SEGMENTS), str(rigid)) + "parameters.contact.overtravel = 8e-4\nparameters.tip.mass = 0.0\n"
-    file.write_text(text + "uncertainty.spring.thickness = 0.02\nuncertainty.spring.stiffness = 0.05\n")
-    relay = Relay.read(file, COMPONENT)
-    (name,) = relay.positions
+    values: Values = {
+        "beam.file": str(rigid),
+        "beam.stiffnessDamping": 5e-6,
+        "contact.overtravel": 8e-4,
+        "tip.mass": 0.0,
+    }
+    parts = {"spring.thickness": Distribution(part=0.02), "spring.stiffness": Distribution(part=0.05)}
     test = Shock("slow", "", "from memory", 20.0, 0.1)
-    position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts, (test,), relay.models[0])
+    position = placed(described({**values, "beam.file": str(rigid)}, parts), test)
     own = position.linear(position.specimen.response, test)
     chance = position.chance(test, position.margins(test, own), own)
     effects = chance.effects

@@ -1,17 +1,15 @@
 """Distributions, correlations, chances and indices: against closed forms; a relay file that identification wrote."""
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.stats import norm, qmc
 
-from component import COMPONENT
-from relay_contact.qualification import Relay, Standard
+from qualified import described, placed
 from relay_contact.qualification import position as positions
-from relay_contact.qualification.distributions import LIMITS, Distribution
+from relay_contact.qualification.distributions import LIMITS, Correlation, Distribution
 from relay_contact.qualification.excitation import Shock
 from relay_contact.qualification.position import Position
 from relay_contact.qualification.statistics import MANY, Surface, chance, drawn, first_order
@@ -36,23 +34,19 @@ def test_distributions_by_name(entries: Any, ends: tuple[float, float]) -> None:
     assert found.half(2.0) == pytest.approx((ends[1] - ends[0]) / 2, abs=2e-4)
 
 
-def slow_shock(tmp_path: Path, text: str) -> tuple[Position, float]:
-    """Return a position of a relay under a slow shock, and the margin: that of linear theory."""
-    path = tmp_path / "relay.toml"
-    path.write_text(text)
-    relay = Relay.read(path, COMPONENT)
-    (name,) = relay.positions
-    position = Position(COMPONENT, relay, name, Standard.read("MIL-PRF-28776").contacts, (SLOW,), relay.models[0])
+def slow_shock(names: tuple[str, ...], coefficient: float = 0.0) -> tuple[Position, float]:
+    """Return a position of a relay with correlated uncertainties under a slow shock, and the margin, linear."""
+    rows = tuple(tuple(1.0 if one == other else coefficient for other in names) for one in names)
+    relay = described({}, dict.fromkeys(names, Distribution(part=0.05)), Correlation(names=names[::-1], matrix=rows))
+    position = placed(relay, SLOW)
     return position, position.linear(position.specimen.response, SLOW)
 
 
-def test_a_correlation_changes_the_interval_as_it_should(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_correlation_changes_the_interval_as_it_should(monkeypatch: pytest.MonkeyPatch) -> None:
     """Preload over mass: goes with Young's modulus and overtravel, whose errors add up, or cancel."""
     monkeypatch.setattr(positions, "DRAWS", 64)
-    text = "uncertainty.contact.overtravel = 0.05\nuncertainty.beam.youngsModulus = 0.05\n[correlation]\n"
-    text += "names = ['beam.youngsModulus', 'contact.overtravel']\nmatrix = [[1.0, {0}], [{0}, 1.0]]\n"
     for coefficient in (-0.9, 0.0, 0.9):
-        position, margin = slow_shock(tmp_path, text.format(coefficient))
+        position, margin = slow_shock(("beam.youngsModulus", "contact.overtravel"), coefficient)
         drawn = position.margins(SLOW, margin)
         margins, told = drawn.margins, position.chance(SLOW, drawn, margin)
         # Of 10,000 draws the deviation is known to 0.7 %.
@@ -66,9 +60,9 @@ def test_a_correlation_changes_the_interval_as_it_should(tmp_path: Path, monkeyp
         assert told.error < 2e-3
 
 
-def test_a_chance_in_ppm_with_its_interval(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(positions, "DRAWS", 64)
-    position, margin = slow_shock(tmp_path, "uncertainty.contact.overtravel = 0.05\n")
+    position, margin = slow_shock(("contact.overtravel",))
     for sigmas in (0.0, 2.0, 3.0):
         own = 1 + sigmas * 0.05 / 1.96
         test = replace(SLOW, acceleration=SLOW.acceleration * margin / own)

@@ -155,7 +155,10 @@ class Test:
     @property
     def weakest_evidence(self) -> Evidence:
         """Return the weakest evidence of a number that a verdict depends on."""
-        return weakest_evidence(self.evidence)
+        if isinstance(self.evidence, str):
+            return self.evidence
+        told = [level for name, level in self.evidence.items() if name not in IDLE]
+        return max(told, key=LEVELS.index, default=LEVELS[-1])
 
     @model_validator(mode="after")
     def names_its_numbers(self) -> "Test":
@@ -165,13 +168,6 @@ class Test:
                 if getattr(self, name, None) is None:
                     raise ValueError(f"evidence.{name}: not an entry of this test")
         return self
-
-
-def weakest_evidence(evidence: Evidence | Mapping[str, Evidence]) -> Evidence:
-    """Return the weakest evidence of a number that a verdict depends on."""
-    if isinstance(evidence, str):
-        return evidence
-    return max((level for name, level in evidence.items() if name not in IDLE), key=LEVELS.index, default=LEVELS[-1])
 
 
 def evidence_told(evidence: Evidence | Mapping[str, Evidence]) -> str:

@@ -46,11 +46,6 @@ class Contacts:
         """Resistance (Ohm) at which the contact has half of the monitor's voltage."""
         return self.voltage / self.current
 
-    @property
-    def weakest_evidence(self) -> excitation.Evidence:
-        """Return the weakest evidence of any number."""
-        return excitation.weakest_evidence(self.evidence)
-
 
 class Recorded(Table):
     """A measured record: its file, beside that of the standard; all its channels, or one."""
