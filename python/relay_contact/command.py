@@ -6,8 +6,10 @@ import math
 import sys
 import warnings
 import webbrowser
+from collections.abc import Callable
 from datetime import date
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -233,9 +235,13 @@ def line() -> argparse.ArgumentParser:
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--fmu", type=Path, default=fmu_path(), help="another component (%(default)s)")
 
-    one = commands.add_parser("list", parents=[common], help="list scenes, relays and standards, or variables")
-    one.set_defaults(act=list_all)
-    add = one.add_argument
+    def command(name: str, act: Callable[[argparse.Namespace], None], text: str, **more: Any) -> Callable[..., Any]:  # noqa: ANN401
+        """Add a command; return what adds arguments to it."""
+        one = commands.add_parser(name, help=text, **({"parents": [common]} | more))
+        one.set_defaults(act=act)
+        return one.add_argument
+
+    add = command("list", list_all, "list scenes, relays and standards, or variables")
     add("--variables", nargs="?", const="", metavar="TEXT", help="variables with TEXT in their names, or all")
     add(
         "--relay",
@@ -244,9 +250,7 @@ def line() -> argparse.ArgumentParser:
     )
 
     about = "Run a scene; write its outputs as a table (CSV, SI units) and as a figure (PNG)."
-    one = commands.add_parser("run", parents=[common], description=about, help="run a scene: table and figure")
-    one.set_defaults(act=run_scene)
-    add = one.add_argument
+    add = command("run", run_scene, "run a scene: table and figure", description=about)
     add("scene", help="name of a scene, as `relay-contact list` prints them, or path of a scene file of your own")
     text = "another value for a parameter or a constant input, SI units; may be repeated"
     add("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
@@ -257,9 +261,7 @@ def line() -> argparse.ArgumentParser:
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
     about = "Test a relay as a standard asks: verdicts, and margins with their uncertainty, as a page and tables."
-    one = commands.add_parser("qualify", parents=[common], description=about, help="test a relay as a standard asks")
-    one.set_defaults(act=qualify_relay)
-    add = one.add_argument
+    add = command("qualify", qualify_relay, "test a relay as a standard asks", description=about)
     add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
     add("--standard", metavar="NAME", help="name of a standard, or path of a file of your own")
     text = "a measured acceleration as a test: CSV, MDF4, UFF58, TDMS or .mat, each channel by itself; may be repeated"
@@ -282,19 +284,13 @@ def line() -> argparse.ArgumentParser:
     add("--out", type=Path, metavar="FOLDER", help=text)
 
     about = "Write what scenes change as parameter sets of SSP 1.0, NAME.ssv."
-    one = commands.add_parser("ssv", parents=[common], description=about, help="write scenes as SSP parameter sets")
-    one.set_defaults(act=write_parameters)
-    add = one.add_argument
+    add = command("ssv", write_parameters, "write scenes as SSP parameter sets", description=about)
     add("scene", nargs="*", help="names or files of scenes; all that come along, if there are none")
     add("--plain", action="store_true", help="for the component in which all numbers are Reals: NAME-plain.ssv")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
-    one = commands.add_parser(
-        "identify", parents=[common], description=IDENTIFY, formatter_class=argparse.RawDescriptionHelpFormatter,
-        help="find parameters of a relay by measurements",
-    )  # fmt: skip
-    one.set_defaults(act=identify_relay)
-    add = one.add_argument
+    raw, text = argparse.RawDescriptionHelpFormatter, "find parameters of a relay by measurements"
+    add = command("identify", identify_relay, text, description=IDENTIFY, formatter_class=raw)
     add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
     add("--data", required=True, nargs="+", metavar="CSV", help="files of measurements")
     text = "seek this one instead of the usual; may be repeated; spring.thickness and the like are entries of its file"
@@ -302,14 +298,11 @@ def line() -> argparse.ArgumentParser:
     add("--out", type=Path, metavar="FOLDER", help="folder for what is written (identification-RELAY)")
 
     about = "Open a page that simulates as one drags sliders, from its file: force, resistance, level that opens."
-    one = commands.add_parser("explore", description=about, help="sliders and curves in the browser")
-    one.set_defaults(act=explore)
-    one.add_argument("--print", action="store_true", help="only print its address")
+    add = command("explore", explore, "sliders and curves in the browser", description=about, parents=[])
+    add("--print", action="store_true", help="only print its address")
 
     about = "Compare a run with a chatter log or a measured resistance: counts, durations and a figure."
-    one = commands.add_parser("compare", description=about, help="a run beside a measurement")
-    one.set_defaults(act=compare_runs)
-    add = one.add_argument
+    add = command("compare", compare_runs, "a run beside a measurement", description=about, parents=[])
     add("run", type=Path, help="table of `relay-contact run`, with contact.resistance")
     add("measured", type=Path, help="CSV: start and duration of interruptions, or time and resistance")
     text = "resistance [Ohm] above which the contact is interrupted (%(default)g)"
@@ -319,9 +312,7 @@ def line() -> argparse.ArgumentParser:
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
     about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
-    one = commands.add_parser("plot", parents=[common], description=about, help="draw a table of outputs")
-    one.set_defaults(act=plot_table)
-    add = one.add_argument
+    add = command("plot", plot_table, "draw a table of outputs", description=about)
     add("table", type=Path, help="CSV file with a column `time`")
     add("--title", default="", help="title of the figure")
     sweep = ("FIRST", "LAST", "START", "DURATION")
