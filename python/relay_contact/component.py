@@ -16,7 +16,6 @@ from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
-from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
@@ -305,9 +304,7 @@ class Contact:
         """Use the instance until the end of the block."""
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Give the instance back."""
         self.give_back()
 

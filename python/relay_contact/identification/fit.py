@@ -271,16 +271,11 @@ class Fit:
         told = [self.jacobian[rows].T @ self.jacobian[rows] for rows in self.slices()]
         lost = sum(2 / each.freedom * (own - own @ covariance @ own) for each, own in zip(self.sets, told, strict=True))
         wider = np.maximum(np.diag(covariance + 2 * covariance @ lost @ covariance), np.diag(covariance))
-        found = []
         influence = covariance @ self.jacobian.T
-        parts = np.array([(influence[:, rows] ** 2).sum(axis=1) for rows in self.slices()])
+        shares = np.array([(influence[:, rows] ** 2).sum(axis=1) for rows in self.slices()]) / np.diag(covariance)
         freedom = np.array([each.freedom for each in self.sets])
-        for number in range(len(self.unknowns)):
-            variance, own = covariance[number, number], parts[:, number]
-            shares = own / variance
-            degrees = 1 / max(float(shares.sum() * (shares / freedom).sum()), 1e-9)
-            found.append(float(stdtrit(degrees, 0.975) * np.sqrt(wider[number])))
-        return np.array(found)
+        degrees = 1 / np.maximum(shares.sum(axis=0) * (shares / freedom[:, None]).sum(axis=0), 1e-9)
+        return np.asarray(stdtrit(degrees, 0.975) * np.sqrt(wider))[: len(self.unknowns)]
 
     def shifts(self, name: str, part: float) -> Array:
         """Return by how much the parameters move if another one, known to a part of its value only, is at its end."""

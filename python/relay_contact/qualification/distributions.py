@@ -50,20 +50,15 @@ class Distribution:
         given = {name for name in ("part", "low", "mode", "high", "values") if getattr(self, name) is not None}
         if given != needed:
             raise ValueError(f"a {self.distribution} distribution has {', '.join(sorted(needed))}")
-        if (
-            self.distribution == "triangular"
-            and not self.corners[0] <= self.corners[1] <= self.corners[2] > (self.corners[0])
-        ):
+        low, mode, high = self.corners
+        if self.distribution == "triangular" and not low <= mode <= high > low:
             raise ValueError("low, mode and high have to rise")
         return self
 
     @property
     def corners(self) -> tuple[float, float, float]:
         """Low, mode and high of a triangle."""
-        assert self.low is not None
-        assert self.mode is not None
-        assert self.high is not None
-        return self.low, self.mode, self.high
+        return self.low or 0.0, self.mode or 0.0, self.high or 0.0
 
     def factor(self, score: Array, value: float) -> Array:
         """Return the parameter in parts of its value, for scores of a standard normal distribution."""

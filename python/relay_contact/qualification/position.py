@@ -209,29 +209,26 @@ class Position:
             nominal = {each.part: each.specimen.response for each in self.parts}
             own = self.nominal
 
-            def margins(row: Array) -> dict[str, dict[str, float]]:
-                responses = self.responses(self.drawn(row)) if self.drawn(row) != own else nominal
-                return {
-                    each.part: {test.name: each.linear(responses[each.part], test) for test in self.tests}
-                    for each in self.parts
-                }
+            def margins(row: Array) -> list[list[float]]:
+                drawn = self.drawn(row)
+                responses = self.responses(drawn) if drawn != own else nominal
+                return [[each.linear(responses[each.part], test) for test in self.tests] for each in self.parts]
 
-            draws = min(FEWEST, DRAWS)
+            draws = FEWEST
             while not self.shared.surfaces:
                 scores = self.scores(draws)
-                found = side_by_side(margins, list(scores))
+                # By part, test and draw.
+                found = np.moveaxis(np.array(side_by_side(margins, list(scores))), 0, -1)
                 known = {
                     each.part: {
-                        test.name: statistics.Surface(
-                            scores, np.log([max(own[each.part][test.name], LOWEST) for own in found])
-                        )
-                        for test in self.tests
+                        test.name: statistics.Surface(scores, np.log(np.maximum(values, LOWEST)))
+                        for test, values in zip(self.tests, rows, strict=True)
                     }
-                    for each in self.parts
+                    for each, rows in zip(self.parts, found, strict=True)
                 }
-                every = [own for each in known.values() for own in each.values()]
+                every = [each for surfaces in known.values() for each in surfaces.values()]
                 if draws == DRAWS or all(
-                    own.error <= max(ROUGHLY, ENOUGH * float(np.std(own.values))) for own in every
+                    each.error <= max(ROUGHLY, ENOUGH * float(np.std(each.values))) for each in every
                 ):
                     self.shared.surfaces |= known
                 draws = min(4 * draws, DRAWS)
