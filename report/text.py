@@ -8,6 +8,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
+from relay_contact.figures import significant
 from report.figure import Figure
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -28,14 +29,6 @@ def signed(value: float, digits: int) -> str:
 def percent(ratio: float, digits: int = 2) -> str:
     """Return the deviation of a ratio from 1."""
     return f"{signed(100 * (ratio - 1), digits)} %"
-
-
-def significant(value: float, digits: int = 4) -> str:
-    """Return a number with so many significant digits, without an exponent."""
-    if not value or not math.isfinite(value):
-        return f"{value:g}"
-    rounded = float(f"{value:.{digits - 1}e}")
-    return number(rounded, max(digits - 1 - math.floor(math.log10(abs(rounded))), 0))
 
 
 def two_digits(value: float) -> str:

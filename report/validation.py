@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from relay_contact import Scene
+from relay_contact.figures import significant
 from report import fit
 from report import published as paper
 from report import tables as tabulated
@@ -15,7 +16,7 @@ from report.publication import Publication, deviations, force, resistance
 from report.published import BEST, FORCE, FREQUENCIES, RATIOS
 from report.spring import PARAMETERS, RIVET, SOURCES, identified, sensitivities
 from report.tables import Row
-from report.text import number, percent, rendered, signed, significant, table
+from report.text import number, percent, rendered, signed, table
 
 CONTACTS = {"Hertz": "smooth spheres", "Rough": "rough contact", "support": "support that yields"}
 TABLES = (

@@ -11,15 +11,17 @@ ROUNDED = 1e-9
 """Part by which a ratio of equal numbers differs from 1 after rounding, and more."""
 
 
-def three(value: float) -> str:
-    """Return a number with three significant digits, without an exponent; on its own side of 1, if it takes more."""
+def significant(value: float, digits: int = 4) -> str:
+    """Return a number with so many significant digits, without an exponent."""
     if not value or not math.isfinite(value):
         return f"{value:g}"
+    rounded = float(f"{value:.{digits - 1}e}")
+    return f"{rounded:.{max(digits - 1 - math.floor(math.log10(abs(rounded))), 0)}f}"
+
+
+def three(value: float) -> str:
+    """Return a number with three significant digits, without an exponent; on its own side of 1, if it takes more."""
     if math.isclose(value, 1, rel_tol=ROUNDED):
         return "1.00"
-    for digits in range(3, 16):
-        rounded = float(f"{value:.{digits - 1}e}")
-        if (rounded < 1) == (value < 1) and (rounded > 1) == (value > 1):
-            break
-    places = digits - 1 - math.floor(math.log10(abs(rounded)))
-    return f"{rounded:.{max(places, 0)}f}"
+    texts = (significant(value, digits) for digits in range(3, 16))
+    return next(text for text in texts if (float(text) < 1) == (value < 1) and (float(text) > 1) == (value > 1))
