@@ -2,9 +2,9 @@
 
 import re
 import tomllib
+from bisect import bisect_left
 from collections.abc import Container, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
-from functools import cache
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -95,45 +95,26 @@ def entries(model: Any, place: Place) -> list[str]:  # noqa: ANN401
 
 
 def line(path: Path, place: Place) -> int:
-    """Return the line in which an entry begins, or what it is missing in.
-
-    By bisection over the parts of the file, from its first line on, that are TOML themselves.
-    """
+    """Return the line in which an entry begins, or what it is missing in: by the first lines that already have it."""
     lines = path.read_text(encoding="utf-8-sig").split("\n")
+    ends = [0]
+    for count in range(1, len(lines) + 1):
+        # An entry may have several lines.
+        with suppress(tomllib.TOMLDecodeError):
+            tomllib.loads("\n".join(lines[ends[-1] : count]))
+            ends.append(count)
 
-    @cache
-    def content(count: int) -> dict[str, Any] | None:
-        try:
-            return tomllib.loads("\n".join(lines[:count]))
-        except tomllib.TOMLDecodeError:
-            return None
-
-    def holds(table: Any) -> bool:  # noqa: ANN401
-        for key in place:
-            try:
+    def holds(count: int) -> bool:
+        table: Any = tomllib.loads("\n".join(lines[:count]))
+        with suppress(KeyError, IndexError, TypeError):
+            for key in place:
                 table = table[key]
-            except (KeyError, IndexError, TypeError):
-                return False
-        return True
+            return True
+        return False
 
-    low, high = 0, len(lines)
-    while place and not holds(content(high)):
+    while not holds(len(lines)):
         place = place[:-1]
-    if not place:
-        return 1
-    while True:
-        middle = (low + high) // 2
-        count = next((each for each in range(middle, low, -1) if content(each) is not None), None)
-        if count is None:
-            # An entry of several lines, or one line.
-            count = next(each for each in range(middle + 1, high + 1) if content(each) is not None)
-            if holds(content(count)):
-                return low + 1
-            low = count
-        elif holds(content(count)):
-            high = count
-        else:
-            low = count
+    return ends[max(bisect_left(ends, True, key=holds), 1) - 1] + 1
 
 
 @contextmanager
