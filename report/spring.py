@@ -141,6 +141,11 @@ class Specimen:
     radius: float
     materials: Materials
 
+    @classmethod
+    def of(cls, contact: Contact) -> Self:
+        """Return that of an instance of the component."""
+        return cls(Spring.of(contact), contact.get("contact.curvatureRadius"), Materials.of(contact))
+
     @property
     def thickness(self) -> float:
         """Of a uniform section with the bending stiffness and the mass, m."""

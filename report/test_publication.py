@@ -9,7 +9,7 @@ from report.bench import Bench, specimen
 from report.effects import effects as listed
 from report.files import DOCS
 from report.published import BEST, FORCE_AMPLITUDE, FREQUENCIES, PEAKS, WITH_PRESTRESS, numbers
-from report.spring import PARAMETERS, Materials, Spring, elastic_reading, identified
+from report.spring import PARAMETERS, Materials, Specimen, Spring, elastic_reading, identified
 
 COMPONENT = Component(fmu_path())
 NO_AXIAL: Values = {"effects.axialForce": "None"}
@@ -48,12 +48,8 @@ def test_a_force_that_opens_the_contact_is_told(bench: Bench) -> None:
 def test_the_identified_specimen_has_the_published_results_and_the_start_values(contact: Contact) -> None:
     found = identified(Materials.of(contact))
     assert found.spring.force(1000.0)[0] == pytest.approx(FORCE_AMPLITUDE, rel=1e-9)
-    start = Spring.of(contact)
     # Start values are rounded to four or five digits, that of the rivet to three.
-    own = [contact.get("contact.curvatureRadius"), start.bending, start.mass, contact.get("beam.width"),
-           contact.get("beam.thickness"), start.rivet, start.beam_damping]  # fmt: skip
-    for (name, *_), value, exact in zip(PARAMETERS, own, found.values * [1e-3, 1e-6, 1e-3, 1e-3, 1e-3, 1e-6, 1e-6],
-                                        strict=True):  # fmt: skip
+    for (name, *_), value, exact in zip(PARAMETERS, Specimen.of(contact).values, found.values, strict=True):
         assert value == pytest.approx(exact, rel=2.5e-3 if "rivet" in name else 3e-4), name
     # And the component has the published first frequency with them.
     values = {"beam.width": 1e-3 * found.values[3], "beam.thickness": 1e-3 * found.values[4],

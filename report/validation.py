@@ -14,7 +14,7 @@ from report.figure import Figure
 from report.files import rows
 from report.publication import Publication, deviations, force, resistance
 from report.published import BEST, FORCE, FREQUENCIES, RATIOS
-from report.spring import PARAMETERS, RIVET, SOURCES, identified, sensitivities
+from report.spring import PARAMETERS, RIVET, SOURCES, Specimen, identified, sensitivities
 from report.tables import Row
 from report.text import number, percent, rendered, signed, table
 
@@ -107,15 +107,10 @@ def identification(of: Publication) -> dict[str, Any]:
     digits = [0.5 * source.digit / source.value for source in SOURCES]
     rounding = sensitivities(of.materials, digits)
     elastic = identified(of.materials, elastic=True)
-    start = of.component.start
-    width, thickness = float(start("beam.width")), float(start("beam.thickness"))
-    bending = of.materials.youngs_modulus * width * thickness**3 / 12
-    starts = [
-        1e3 * float(start("contact.curvatureRadius")), 1e6 * bending, 1e3 * of.materials.density * width * thickness,
-        1e3 * width, 1e3 * thickness, 1e6 * float(start("tip.mass")), 1e6 * float(start("beam.stiffnessDamping")),
-    ]  # fmt: skip
+    with of.component.started() as contact:
+        starts = Specimen.of(contact)
     rows = []
-    for (name, unit, by), value, own in zip(PARAMETERS, found.values, starts, strict=True):
+    for (name, unit, by), value, own in zip(PARAMETERS, found.values, starts.values, strict=True):
         texts = [f"{significant(each, 6)} {unit}" for each in (value, own)]
         rows.append([name, by, *texts, percent(own / value)])
     columns = ["parameter", "determined by", "identified", "start value", "difference"]

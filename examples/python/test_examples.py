@@ -1,6 +1,5 @@
 """The examples in their short forms, run as their users run them, against second solutions and closed forms."""
 
-import csv
 import ctypes
 import math
 import re
@@ -20,6 +19,7 @@ from frictional import Frictional
 from own_spring_elements import CUBE, Drawing, Elements, missing, segments
 from reference import Reference
 from relay_contact import Array, Component, Scene, Values, fmu_path, read_table
+from report.files import rows as table
 from whole_relay import Coil, Relay
 
 FOLDER, FMU = Path(__file__).parent, fmu_path()
@@ -64,11 +64,6 @@ def printed(folder: Path, name: str, *arguments: str) -> str:
 def run(tmp_path: Path) -> Run:
     """Run examples with their files in the test's folder."""
     return partial(printed, tmp_path)
-
-
-def table(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def order(steps: Array, errors: Array) -> float:

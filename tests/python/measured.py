@@ -153,9 +153,9 @@ def rough_curves() -> Array:
     return np.array([[abs(rough(each).force_response(f)) for f in FREQUENCY] for each in CURVES])
 
 
-def rough_frequency_record(seed: int, noise: float = 0.001) -> list[Measurement]:
-    """Return frequencies over the overtravel with noise, as a part of the value."""
-    values = rough_frequencies() * np.exp(noise * np.random.default_rng(seed).standard_normal(len(OVERTRAVELS)))
+def rough_frequency_record(seed: int) -> list[Measurement]:
+    """Return frequencies over the overtravel with noise, a thousandth of the value."""
+    values = rough_frequencies() * np.exp(0.001 * np.random.default_rng(seed).standard_normal(len(OVERTRAVELS)))
     return [Measurement(Path("frequency.csv"), FREQUENCIES, OVERTRAVELS, "frequency", "Hz", values, position=CLOSED)]
 
 

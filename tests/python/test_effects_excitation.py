@@ -22,10 +22,10 @@ RISE = 1.7e-3
 LIMIT = AMPLITUDE / (2 * pi * 1000) ** 2
 
 
-def force(values: Values, steps: int = STEPS, step: float = STEP) -> Array:
+def force(values: Values) -> Array:
     """Give the contact force at the communication points."""
     scene = {**BONDED, "solver.tolerance": TOLERANCE, **values}
-    return run(scene, steps * step, step, ["contact.force"])["contact.force"]
+    return run(scene, STEPS * STEP, STEP, ["contact.force"])["contact.force"]
 
 
 def generated(course: Callable[[float], float]) -> Acceleration:

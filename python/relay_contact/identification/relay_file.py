@@ -98,11 +98,9 @@ def spring_text(result: Identification) -> tuple[str, str]:
     return file.name, text_of(str(file), {each.unknown.name: each.value for each in found})
 
 
-def write(folder: Path, result: Identification) -> Path:
-    """Write both files; give the relay's."""
+def write(folder: Path, result: Identification) -> None:
+    """Write both files."""
     name, spring = spring_text(result)
     if name:
         (folder / name).write_text(spring, encoding="utf-8")
-    path = folder / f"{result.path.stem}.toml"
-    path.write_text(text(result, name), encoding="utf-8")
-    return path
+    (folder / f"{result.path.stem}.toml").write_text(text(result, name), encoding="utf-8")

@@ -137,8 +137,8 @@ def draw(result: Identification) -> Figure:
     return figure
 
 
-def write(folder: Path, result: Identification, component: Component) -> list[Path]:
-    """Write the relay's file, page, figure and table; give their paths."""
+def write(folder: Path, result: Identification, component: Component) -> None:
+    """Write the relay's file, page, figure and table."""
     folder.mkdir(parents=True, exist_ok=True)
     settings: Any = pages.STYLE
     with mpl.rc_context(settings):
@@ -158,4 +158,4 @@ def write(folder: Path, result: Identification, component: Component) -> list[Pa
             numbers = (each.unknown.start, each.value, *each.interval)
             lines_.writerow([each.unknown.label, *(f"{number:.9g}" for number in numbers)])
         lines_.writerows([label, "", "not determined", "", ""] for label in result.missing)
-    return [relay_file.write(folder, result), *(folder / name for name in FILES)]
+    relay_file.write(folder, result)

@@ -7,7 +7,7 @@ from relay_contact.component import Component
 from relay_contact.qualification.assessment import FEW, assess, chosen
 from relay_contact.qualification.relay import Relay, check_monitor, relays
 from relay_contact.qualification.results import Assessment, Finding, Tested
-from relay_contact.qualification.standards import Standard, standards
+from relay_contact.qualification.standards import Recorded, Standard, standards
 from relay_contact.scene import progress_bar
 
 __all__ = ["FEW", "Assessment", "Finding", "Relay", "Standard", "Tested", "qualify", "relays", "standards"]
@@ -50,7 +50,7 @@ def qualify(
     asked = Standard.read(standard or LIMITS)
     asked = chosen(asked, tests or []) if standard else replace(asked, title="measured records", tests=())
     for file in history or []:
-        asked = asked.with_history(Path(file), unit=unit, rate=rate)
+        asked = replace(asked, tests=(*asked.tests, *Recorded(file=str(file), unit=unit, rate=rate).tests(Path())))
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
     check_monitor(component, described, asked.contacts)
     count = len(asked.tests) * len(described.positions) * len(described.models) * (1 + len(described.axes))

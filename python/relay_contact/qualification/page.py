@@ -284,8 +284,8 @@ def limit(standard: Standard) -> str:
     )
 
 
-def write(assessment: Assessment, component: Component, date: str = "", pdf: bool = False) -> list[Path]:
-    """Write page and tables; return their paths."""
+def write(assessment: Assessment, component: Component, date: str = "", pdf: bool = False) -> None:
+    """Write page and tables."""
     folder = assessment.folder
     settings: Any = pages.STYLE
     with mpl.rc_context(settings):
@@ -294,4 +294,3 @@ def write(assessment: Assessment, component: Component, date: str = "", pdf: boo
     assessment.write()
     if pdf:
         pages.write_pdf(page, folder / PDF)
-    return [folder / name for name in (*FILES, *([PDF] if pdf else []))]

@@ -105,10 +105,9 @@ class Relay:
     digest: str = ""
     """Of the file."""
 
-    def value(self, component: Component, name: str, position: str | None = None) -> float:
-        """Return the value of a parameter, in the first position unless another is named; of an entry a factor of 1."""
-        values = self.positions[position or next(iter(self.positions))]
-        return component.value(values, name)
+    def value(self, component: Component, name: str) -> float:
+        """Return the value of a parameter in the first position; of an entry a factor of 1."""
+        return component.value(next(iter(self.positions.values())), name)
 
     def parts(self, component: Component) -> dict[str, float]:
         """Return half of each interval of 95 %, as a part of the value."""

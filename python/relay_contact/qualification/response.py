@@ -170,10 +170,10 @@ def fast(count: int) -> int:
     return min(each << (-(-count // each) - 1).bit_length() for each in odd)
 
 
-def settled(answer: Array, part: float = 1e-3) -> float:
-    """Return the time (s) after which less than a part of an answer is left."""
+def settled(answer: Array) -> float:
+    """Return the time (s) after which less than a thousandth of an answer is left."""
     left = np.maximum.accumulate(np.abs(answer[::-1]))[::-1]
-    return STEP * int(np.argmax(left < part * left[0]))
+    return STEP * int(np.argmax(left < 1e-3 * left[0]))
 
 
 def respond(component: Component, values: Values, threshold: float, calm: float = CALM) -> Response:

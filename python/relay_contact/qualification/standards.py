@@ -120,11 +120,6 @@ class Standard:
                 raise refused(path, ("shock", number, "duration"), shock.duration, text)
         return cls(content.title or path.stem, content.contacts, tuple(tests), digest(path.read_bytes()))
 
-    def with_history(self, file: Path, channel: str = "", unit: str = "", rate: float | None = None) -> "Standard":
-        """Return the standard with a measured record as a further test."""
-        tests = Recorded(file=str(file), channel=channel, unit=unit, rate=rate).tests(Path())
-        return replace(self, tests=(*self.tests, *tests))
-
 
 def standards() -> dict[str, Path]:
     """Return the files of the standards by name."""

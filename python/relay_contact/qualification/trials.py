@@ -332,7 +332,7 @@ class Piece:
         return threshold(self.tried(specimen, sign), guess or self.guess, failing)
 
 
-def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -> list[Piece]:
+def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
     """Return a course as a whole if it is short, else what is around its largest dips, by linear theory."""
     response, lasting = specimen.response, specimen.lasting
     whole = course if isinstance(course, Noise) else course.padded(response.settling())
@@ -357,7 +357,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
         level, step = stays(sign * response.change(whole.sampled()), lasting), STEP
     found = []
     # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
-    for _ in range(2 * count + 2 if isinstance(course, Noise) else count):
+    for _ in range(2 * DIPS + 2 if isinstance(course, Noise) else DIPS):
         at = int(level.argmin())
         first, last = (round((step * at + each) / STEP) for each in (-before / 2, before / 2))
         time = STEP * np.arange(first - since, last)
@@ -368,7 +368,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, count: int = DIPS) -
         part = whole.part(begin, now + lasting + AFTER)
         found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
         level[max(0, at - round(before / step)) : at + round(before / step)] = np.inf
-    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:count]]
+    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:DIPS]]
 
 
 @dataclass(frozen=True)
