@@ -1,12 +1,15 @@
 """Accuracy and cost: docs/accuracy.md, its tables and figures from what the package `benches` measured."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
+
+import numpy as np
+import pandas as pd
 
 from report import many
 from report.figure import Curve, Figure
-from report.files import DOCS, OUT, PICTURES, Row, rewrite, rows
+from report.files import DOCS, OUT, PICTURES, rewrite
 from report.page import Section, whole
 from report.text import number, rendered, short, table, two_digits
 
@@ -26,6 +29,7 @@ FORCE, INSTANTS = (
     "error of the contact force, relative to the preload",
     "error of the instants of opening and closing / µs",
 )
+ERRORS = ("force_error", "event_error_us")
 USELESS = {True: 10.0, False: 1.0}
 """Larger errors are not drawn, us and relative to the preload: such a run is of no use."""
 VERDICT = "From tolerances of"
@@ -34,54 +38,48 @@ OK = "ok"
 TIMES = "\N{MULTIPLICATION SIGN}"
 
 
-def error(row: Row, instants: bool) -> float:
-    """Return the error of a run; infinite where it has none."""
-    return float(row["event_error_us" if instants else "force_error"] or "inf")
+def read() -> pd.DataFrame:
+    """Return what was measured; a run that has no error has an infinite one."""
+    found = pd.read_csv(MEASURED, dtype={"modes": str})
+    return found.fillna(dict.fromkeys(ERRORS, np.inf))
 
 
-def over(measured: list[Row], part: str, column: str) -> Iterator[Curve]:
+def over(measured: pd.DataFrame, part: str, column: str) -> Iterator[Curve]:
     """Give the error of the force over a quantity, for each scene."""
     for colour, scene in enumerate(SCENES):
-        own = [row for row in measured if (row["part"], row["scene"]) == (part, scene) and row["force_error"]]
-        x, y = [float(row[column]) for row in own], [error(row, False) for row in own]
-        yield Curve(scene, x, y, "marked", colour)
+        own = measured[(measured.part == part) & (measured.scene == scene) & np.isfinite(measured.force_error)]
+        yield Curve(scene, own[column], own.force_error, "marked", colour)
 
 
-def cheapest(points: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return the runs, by their time and error, that none cheaper equals."""
-    found: list[tuple[float, float]] = []
-    for point in sorted(points):
-        if not found or point[1] < found[-1][1]:
-            found.append(point)
-    return found
+def compared(measured: pd.DataFrame, scene: str) -> pd.DataFrame:
+    """Return the runs of a scene by all integrators."""
+    return measured[(measured.scene == scene) & measured.part.isin(["delivered", "peers"])]
 
 
-def integrators(measured: list[Row], id: str, scene: str, instants: bool) -> Figure:  # noqa: A002
-    """Draw the error over the computing time, for each integrator."""
-    runs = [row for row in measured if row["scene"] == scene and row["part"] in ("delivered", "peers")]
+def integrators(measured: pd.DataFrame, id: str, scene: str, instants: bool) -> Figure:  # noqa: A002
+    """Draw the error over the computing time, for each integrator: of the runs that none cheaper equals."""
+    runs, error = compared(measured, scene), ERRORS[instants]
+    useful = runs[runs.seconds_per_second.notna() & (runs[error] <= USELESS[instants])]
     curves: list[Curve] = []
     ends: list[float] = []
-    for colour, name in enumerate(dict.fromkeys(row["integrator"] for row in runs)):
-        useful = [(float(row["seconds_per_second"]), error(row, instants)) for row in runs
-                  if row["integrator"] == name and row["seconds_per_second"]]  # fmt: skip
-        points = cheapest(point for point in useful if point[1] <= USELESS[instants])
-        if points:
-            x, y = zip(*points, strict=True)
-            ends += [x[0], x[-1]]
-            curves.append(Curve(name, x, y, "marked", colour))
-    column = "reference_event_error_us" if instants else "reference_force_error"
-    known = max(float(row[column]) for row in runs)
+    for colour, name in enumerate(runs.integrator.unique()):
+        own = useful[useful.integrator == name].sort_values(["seconds_per_second", error])
+        own = own[own[error] < own[error].cummin().shift(fill_value=np.inf)]
+        if len(own):
+            ends += [own.seconds_per_second.min(), own.seconds_per_second.max()]
+            curves.append(Curve(name, own.seconds_per_second, own[error], "marked", colour))
+    known = runs[f"reference_{error}"].max()
     curves.append(Curve("error of the reference", [min(ends), max(ends)], [known, known], "dashed", 6))
     label = INSTANTS if instants else FORCE
     title = f"{label.partition(' / ')[0].capitalize()} over computing time: {scene}"
     return Figure(id, title, TIME, label, curves, "xy")
 
 
-def figures(measured: list[Row]) -> list[Figure]:
+def figures(measured: pd.DataFrame) -> list[Figure]:
     """Return the figures of what was measured."""
     found = [integrators(measured, *each) for each in COMPARED]
     curves = list(over(measured, "delivered", "tolerance"))
-    asked = sorted({float(row["tolerance"]) for row in measured if row["part"] == "delivered"})
+    asked = np.unique(measured.tolerance[measured.part == "delivered"])
     curves.append(Curve("error = tolerance", asked, asked, "dashed", 6))
     found.append(Figure("accuracy-tolerance", "Error against tolerance", TOLERANCE, FORCE, curves, "xy"))
     modes = list(over(measured, "modes", "modes"))
@@ -94,85 +92,80 @@ def time(seconds: float) -> str:
     return f"{two_digits(seconds)} s" if seconds >= 1 else f"{two_digits(1e3 * seconds)} ms"
 
 
-def envelope(measured: list[Row], scene: str, levels: tuple[float, ...], instants: bool, started: bool = False) -> str:
+def envelope(
+    measured: pd.DataFrame, scene: str, levels: tuple[float, ...], instants: bool, started: bool = False
+) -> str:
     """Return a table: of each integrator the cheapest run whose error is at most each level (s, or relative).
 
     Its time is that of a simulated second, or of the whole run with its start.
     """
     column = "total_seconds" if started else "seconds_per_second"
-    own = [row for row in measured if row["scene"] == scene and row["part"] in ("delivered", "peers") and row["events"]]
-    names = list(dict.fromkeys(row["integrator"] for row in own))
+    own = compared(measured, scene)
+    own = own[own.events.notna()]
+    names = own.integrator.unique()
     scale, unit = (1e-6, " s") if instants else (1.0, "")
+    errors = scale * own[ERRORS[instants]]
     lines = []
     for level in levels:
         cells, least = [f"{short(level)}{unit}"], 0.0
         for name in names:
-            good = [row for row in own if row["integrator"] == name and scale * error(row, instants) <= level]
-            if not good:
+            good = own[(own.integrator == name) & (errors <= level)]
+            if not len(good):
                 cells.append("not reached")
                 continue
-            run = min(good, key=lambda row: float(row[column]))
-            cost, tolerance = float(run[column]), short(float(run["tolerance"]))
-            spent = time(cost) + (f" (start {time(float(run['start_seconds']))})" if started else "")
-            if run["part"] == "delivered":
+            run = good.loc[good[column].idxmin()]
+            cost, tolerance = run[column], short(run.tolerance)
+            spent = time(cost) + (f" (start {time(run.start_seconds)})" if started else "")
+            if run.part == "delivered":
                 least = cost
-                cells.append(f"{spent}, {tolerance}, delivers {short(scale * error(run, instants))}{unit}")
+                cells.append(f"{spent}, {tolerance}, delivers {short(errors[run.name])}{unit}")
             else:
-                cells.append(f"**{two_digits(cost / least)}{TIMES}** {spent}, {run['modes']} modes, {tolerance}")
+                cells.append(f"**{two_digits(cost / least)}{TIMES}** {spent}, {run.modes} modes, {tolerance}")
         lines.append(cells)
     return table(["allowed", *names], lines)
 
 
-def delivered_table(measured: list[Row]) -> str:
+def delivered_table(measured: pd.DataFrame) -> str:
     """Return what the component delivers: error of the force, of opening durations, modes, computing time."""
-    own = [row for row in measured if row["part"] == "delivered"]
     lines = []
-    for tolerance in dict.fromkeys(row["tolerance"] for row in own):
-        cells = [short(float(tolerance))]
-        for scene in SCENES:
-            (row,) = [row for row in own if (row["scene"], row["tolerance"]) == (scene, tolerance)]
-            duration = (
-                f"{short(float(row['opening_duration_error_us']))} µs, " if row["events"] not in ("", "0") else ""
-            )
-            cost = time(float(row["seconds_per_second"]))
-            cells.append(f"{short(float(row['force_error']))}, {duration}{row['modes']} modes, {cost}")
+    for _, own in measured[measured.part == "delivered"].groupby("tolerance", sort=False):
+        cells = [short(own.tolerance.iloc[0])]
+        for _, row in own.set_index("scene").loc[list(SCENES)].iterrows():
+            duration = f"{short(row.opening_duration_error_us)} µs, " if row.events > 0 else ""
+            cells.append(f"{short(row.force_error)}, {duration}{row.modes} modes, {time(row.seconds_per_second)}")
         lines.append(cells)
     return table(["tolerance", *SCENES], lines)
 
 
-def verdict(measured: list[Row]) -> str:
+def verdict(measured: pd.DataFrame) -> str:
     """Return down to which tolerance the error of the contact force stays below it."""
-    worst: dict[float, float] = {}
-    for row in measured:
-        if row["part"] == "delivered":
-            tolerance = float(row["tolerance"])
-            worst[tolerance] = max(worst.get(tolerance, 0.0), error(row, False))
-    limit = max((tolerance for tolerance, most in worst.items() if most > tolerance), default=0.0)
-    kept = {tolerance: most / tolerance for tolerance, most in worst.items() if tolerance > limit}
-    text = (f"{VERDICT} {short(max(kept))} to {short(min(kept))} the error of the contact force is at most "
-            f"{number(100 * max(kept.values()), 0)} % of `solver.tolerance`")  # fmt: skip
-    if limit:
-        most = max(most for tolerance, most in worst.items() if tolerance <= limit)
-        text += f". From {short(limit)} on rounding shows, and the error is up to {short(most)}"
+    worst = measured[measured.part == "delivered"].groupby("tolerance").force_error.max()
+    limit = max(worst.index[worst > worst.index], default=0.0)
+    kept, beyond = worst[worst.index > limit], worst[worst.index <= limit]
+    text = (f"{VERDICT} {short(kept.index.max())} to {short(kept.index.min())} the error of the contact force is at "
+            f"most {number(100 * (kept / kept.index).max(), 0)} % of `solver.tolerance`")  # fmt: skip
+    if len(beyond):
+        text += f". From {short(limit)} on rounding shows, and the error is up to {short(beyond.max())}"
     return f"{text}."
 
 
 def write() -> Path:
     """Write the tables of docs/accuracy.md, and the figures of what was measured."""
-    page, measured = DOCS / "accuracy.md", rows(MEASURED)
-    missing = {f"{row['integrator']} {row['outcome']}" for row in measured if row["outcome"].startswith("skipped")}
+    page, measured = DOCS / "accuracy.md", read()
+    skipped = measured[measured.outcome.str.startswith("skipped")]
+    missing = set(skipped.integrator + " " + skipped.outcome)
     if missing:
         raise SystemExit(f"{page.name} is left as it is, as it compares with all peers: {'; '.join(sorted(missing))}")
     for figure in figures(measured):
         figure.write(PICTURES)
-    timed = [row for row in measured if row["part"] != "modes" and row["seconds_per_second"]]
-    parts = [float(row["seconds_per_second"]) / float(row["least_seconds_per_second"]) for row in timed]
-    costs = {(row["scene"], short(float(row["tolerance"]))): float(row["seconds_per_second"])
-             for row in timed if row["part"] == "delivered"}  # fmt: skip
+    timed = measured[(measured.part != "modes") & measured.seconds_per_second.notna()]
+    parts = timed.seconds_per_second / timed.least_seconds_per_second
+    costs = timed[timed.part == "delivered"].set_index(["scene", "tolerance"]).seconds_per_second
+    failed = measured[measured.outcome != OK]
     fine, coarse = (1e-6, 1e-7, 1e-8, 1e-9), (1e-2, 1e-4, 1e-6, 1e-8)
     text, _ = rendered("accuracy.md", [], {
-        "verdict": verdict(measured), "spread": max(parts) / min(parts) - 1, "delivered": delivered_table(measured),
-        "growth": [costs[scene, "1e-10"] / costs[scene, "1e-2"] for scene in SCENES],
+        "verdict": verdict(measured), "spread": parts.max() / parts.min() - 1, "delivered": delivered_table(measured),
+        "growth": [costs[scene, 1e-10] / costs[scene, 1e-2] for scene in SCENES],
         "tables": [
             ("chatter", True, False, envelope(measured, "chatter", fine, True)),
             ("chatter", True, True, envelope(measured, "chatter", fine, True, started=True)),
@@ -183,9 +176,7 @@ def write() -> Path:
             ("closing bounce", True, False, envelope(measured, "closing bounce", fine, True)),
         ],
         "machine": MEASURED.with_name("machine.txt").read_text(encoding="utf-8"),
-        "failed": [
-            f"{row['scene']}, {row['integrator']}: {row['outcome']}" for row in measured if row["outcome"] != OK
-        ],
+        "failed": list(failed.scene + ", " + failed.integrator + ": " + failed.outcome),
     })  # fmt: skip
     rewrite(page, "tables", text)
     rewrite(page, "many", f"{many.rates()}\n\n{many.instances()}\n")

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pandas as pd
 import pytest
 from playwright.sync_api import Browser, Page
 
@@ -159,8 +160,8 @@ def test_links_of_the_documentation_lead_to_files(documentation: Page) -> None:
 
 def test_a_comparison_without_a_peer_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     page = (DOCS / "accuracy.md").read_text(encoding="utf-8")
-    measured = [{"integrator": "CVODE BDF", "outcome": "skipped: it needs SUNDIALS"}]
-    monkeypatch.setattr(accuracy, "rows", lambda _: measured)
+    measured = pd.DataFrame({"integrator": ["CVODE BDF"], "outcome": ["skipped: it needs SUNDIALS"]})
+    monkeypatch.setattr(accuracy, "read", lambda: measured)
     with pytest.raises(SystemExit, match="CVODE BDF skipped"):
         accuracy.write()
     assert (DOCS / "accuracy.md").read_text(encoding="utf-8") == page

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from scipy.optimize import brentq
 
 from relay_contact import Scene
@@ -11,7 +12,6 @@ from report import fit
 from report import published as paper
 from report import tables as tabulated
 from report.figure import Figure
-from report.files import rows
 from report.publication import Publication, deviations, force, resistance
 from report.published import BEST, FORCE, FREQUENCIES, RATIOS
 from report.spring import PARAMETERS, RIVET, SOURCES, Specimen, identified, sensitivities
@@ -130,47 +130,45 @@ def identification(of: Publication) -> dict[str, Any]:
 
 def fitted_contacts() -> dict[str, Any]:
     """Return the tables and numbers of the three contacts that were fitted."""
-    numbers = rows(fit.TABLE)
-    parameters = {(each["contact"], each["parameter"]): each for each in rows(fit.PARAMETERS)}
+    numbers = pd.read_csv(fit.TABLE, keep_default_na=False)
+    parameters: Any = pd.read_csv(fit.PARAMETERS, index_col=["contact", "parameter"]).fillna({"unit": ""})
 
     def parameter(contact: str, name: str) -> float:
-        return float(parameters[contact, name]["value"])
+        return float(parameters.value[contact, name])
 
-    def find(text: str) -> dict[str, float]:
-        own = next(each for each in numbers if text in each["quantity"])
-        return {name: float(own[name]) for name in ("published", *CONTACTS)}
+    def find(text: str) -> Any:  # noqa: ANN401
+        return numbers[numbers.quantity.str.contains(text, regex=False)].iloc[0]
 
-    def deviation(own: dict[str, str], contact: str) -> str:
-        value, known = float(own[contact]), float(own["published"])
-        apart = f"{signed(value - known, 0)} °" if own["unit"] == "°" else percent(value / known, 1)
-        return f"{significant(value)} {own['unit']}".strip() + f", {apart}"
+    def deviation(own: Any, contact: str) -> str:  # noqa: ANN401
+        value, known = own[contact], own.published
+        apart = f"{signed(value - known, 0)} °" if own.unit == "°" else percent(value / known, 1)
+        return f"{significant(value)} {own.unit}".strip() + f", {apart}"
 
-    def compared(own: list[dict[str, str]], *last: Row) -> str:
-        rows = [[each["quantity"], f"{float(each['published']):.5g} {each['unit']}".strip(),
-                 *(deviation(each, contact) for contact in CONTACTS), each["location"]] for each in own]  # fmt: skip
+    def compared(own: pd.DataFrame, *last: Row) -> str:
+        rows = [
+            [each.quantity, f"{each.published:.5g} {each.unit}".strip(),
+             *(deviation(each, contact) for contact in CONTACTS), each.location]
+            for _, each in own.iterrows()
+        ]  # fmt: skip
         columns = ["quantity", "published", *CONTACTS.values(), "location in the publication"]
         return table(columns, [*rows, *last])
 
     def cell(contact: str, name: str) -> str:
-        own = parameters.get((contact, name))
-        if own is None:
+        if (contact, name) not in parameters.index:
             return ""
-        value, low, high = (float(own[each]) for each in ("value", "low", "high"))
-        shown = f"{significant(value, 3)} {own['unit']}".strip()
+        unit, value, low, high = parameters.loc[(contact, name)]
+        shown = f"{significant(value, 3)} {unit}".strip()
         return (
             f"{shown}, undetermined"
             if high > 100 * low
             else f"{shown} ({significant(low, 3)} to {significant(high, 3)})"
         )
 
-    fitted = [each for each in numbers if each["fitted"] == "1"]
-    others = [each for each in numbers if each["fitted"] != "1"]
+    fitted, others = (numbers[numbers.fitted == each] for each in (1, 0))
     rms = {contact: parameter(contact, "rms") for contact in CONTACTS}
-    names = [name for contact, name in parameters if contact == "Rough" and name != "rms"]
-    lines = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in names]
+    lines = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in parameters.loc["Rough"].index[1:]]
     # Those fitted, and the displacement with the weakest damping, which stands first among the others.
-    squares = {contact: [np.log(float(each[contact]) / float(each["published"])) ** 2 for each in [*fitted, others[0]]]
-               for contact in CONTACTS}  # fmt: skip
+    with_weakest = pd.concat([fitted, others[:1]])
     stiffness, exponent = (
         parameter("Rough", "contact stiffness at 0.152 N"),
         parameter("Rough", "exponent of the stiffness"),
@@ -187,9 +185,10 @@ def fitted_contacts() -> dict[str, Any]:
         "fits": table(["parameter", *CONTACTS.values()], lines),
         "softer_support": paper.STIFFNESS / parameter("support", "contact stiffness at 0.152 N"),
         "table4": 100 * (paper.DISPLACEMENTS[0] / paper.DISPLACEMENTS[1] - 1),
-        "with_weakest": {contact: 100 * np.mean(each) ** 0.5 for contact, each in squares.items()},
+        "with_weakest": {contact: 100 * np.mean(np.log(with_weakest[contact] / with_weakest.published) ** 2) ** 0.5
+                         for contact in CONTACTS},
         "softer": paper.STIFFNESS / stiffness,
-        "worst_rough": np.ceil(max(100 * abs(float(each["Rough"]) / float(each["published"]) - 1) for each in fitted)),
+        "worst_rough": np.ceil(100 * (fitted.Rough / fitted.published - 1).abs().max()),
         "short": {contact: [percent(each[contact] / each["published"], 1) for each in short] for contact in CONTACTS},
         "rest": rest, "law_stiffness": law, "exponent": exponent,
         "crossing": FORCE * (stiffness / law) ** (1 / (paper.EXPONENT - exponent)),
