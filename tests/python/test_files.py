@@ -314,6 +314,13 @@ def test_rms_of_a_density_in_closed_form() -> None:
     assert overall(corners[:4]) == pytest.approx(6.06, abs=0.05)
 
 
+def scene_beside_a_table(folder: Path) -> Path:
+    """Write a table of inputs into a folder beside a scene, whose path is returned."""
+    (folder / "moved").mkdir()
+    (folder / "moved/in.csv").write_text("time,support.displacement\n0,0\n1e-3,1e-6\n")
+    return folder / "scene.toml"
+
+
 SCENE = 'title = "own"\nstop = 1e-3\ncommunicationStep = 1e-5\noutputs = ["contact.force"]\n'
 
 
@@ -334,18 +341,14 @@ SCENE = 'title = "own"\nstop = 1e-3\ncommunicationStep = 1e-5\noutputs = ["conta
     ],
 )
 def test_errors_in_a_scene_have_their_line(tmp_path: Path, text: str, message: str) -> None:
-    path = tmp_path / "scene.toml"
-    (tmp_path / "moved").mkdir()
-    (tmp_path / "moved/in.csv").write_text("time,support.displacement\n0,0\n1e-3,1e-6\n")
+    path = scene_beside_a_table(tmp_path)
     path.write_text(text)
     with pytest.raises(RelayContactError, match=f"^{re.escape(str(path))}:{message}"):
         run(path, component=COMPONENT)
 
 
 def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    (tmp_path / "moved").mkdir()
-    (tmp_path / "moved/in.csv").write_text("time,support.displacement\n0,0\n1e-3,1e-6\n")
+    path = scene_beside_a_table(tmp_path)
     path.write_text(SCENE + "[inputs]\nfile = 'moved/in.csv'\n")
     moved = run(path, component=COMPONENT)["contact.force"]
     path.write_text(SCENE)
@@ -373,10 +376,16 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": ["a"], "base.acceleration": [0.0]}}, "time: not allowed, allowed are numbers"),
         ({"inputs": {"time": [0.0], "tip.mass": [1e-5]}}, "tip.mass: not an input"),
         ({"inputs": {"time": [0.0], "base.acceleration": [0.0]}, "base.acceleration": 1.0}, "given twice"),
-        (
-            {"spring.thickness": "thick", "beam.file": str(ROOT / "scenes/springs/tapered-cube.toml")},
-            "no such variable",
-        ),
+        ({"spring.thickness": "thick"}, "no such variable"),
+        ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),
+        ({"contact.force": 1.0}, "an output, which cannot be set"),
+        ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded, Rough; did you mean Bonded"),
+        ({"beam.length": "long"}, "allowed is a finite number"),
+        ({"solver.modes": 2.5}, "solver.modes = 2.5: not allowed, allowed is a whole number"),
+        ({"effects.excitation": float("nan")}, "allowed is None, Sine"),
+        ({"beam.file": 3.0}, "beam.file = 3.0: not allowed, allowed is a text"),
+        ({"beam.length": -1.0}, "beam.length = -1 m: not allowed, allowed is 0.001 to 0.2"),
+        ({"effects.heating": "on"}, "allowed is true, false"),
     ],
 )
 def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str) -> None:  # noqa: ANN401
@@ -411,7 +420,6 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
         (["--step", "0"], "argument --step: 0: not allowed, allowed is a number greater than 0"),
         (["--step", "nan"], "argument --step: nan: not allowed, allowed is a finite number"),
         (["--stop", "1 ms"], "argument --stop: 1 ms: not allowed, allowed is a finite number"),
-        (["--stop", "1e9"], "relay-contact: stop = 1e+09 s with steps of 1e-05 s: not allowed"),
         (["--set", "solver.modes=inf"], "relay-contact: solver.modes = inf: not allowed, allowed is a whole number"),
         (["--set", "solver.modes=3000000000"], "relay-contact: solver.modes = 3000000000.0: not allowed"),
         (
@@ -419,10 +427,6 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
             "relay-contact: --set tip_mass=1e-5: tip.mass is given twice",
         ),
         (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
-        (
-            ["--set", "beam.length=15 mm"],
-            'relay-contact: beam.length = "15 mm": not allowed, allowed is a finite number',
-        ),
     ],
 )
 def test_arguments_of_the_command_that_do_not_fit_are_refused(

@@ -49,25 +49,6 @@ def test_an_input_course_is_linear_between_its_points() -> None:
     assert np.abs(driven - exact).max() / (np.ptp(exact) / 2) < (2 * np.pi * 1e-2) ** 2 / 8
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),
-        ({"contact.force": 1.0}, "an output, which cannot be set"),
-        ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded, Rough; did you mean Bonded"),
-        ({"beam.length": "long"}, "allowed is a finite number"),
-        ({"solver.modes": 2.5}, "solver.modes = 2.5: not allowed, allowed is a whole number"),
-        ({"effects.excitation": float("nan")}, "allowed is None, Sine"),
-        ({"beam.file": 3.0}, "beam.file = 3.0: not allowed, allowed is a text"),
-        ({"beam.length": -1.0}, "beam.length = -1 m: not allowed, allowed is 0.001 to 0.2"),
-        ({"effects.heating": "on"}, "allowed is true, false"),
-    ],
-)
-def test_wrong_names_and_values_are_explained(changes: Any, message: str) -> None:  # noqa: ANN401
-    with pytest.raises(RelayContactError, match=message):
-        run("paper-1khz", component=COMPONENT, **changes)
-
-
 def test_an_unknown_scene_is_answered_with_those_there_are() -> None:
     with pytest.raises(
         RelayContactError, match="no scene of this name; there are armature-shock, at-rest, changeover-make"

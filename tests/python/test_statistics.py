@@ -70,6 +70,7 @@ def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> N
         told = position.chance(test, position.margins(test, own), own)
         expected = norm.cdf(-sigmas / own)
         assert told.low <= expected <= told.high, sigmas
+        assert told.low <= told.failing <= told.high, sigmas
         # By the number of draws, and an error of the margin of up to 0.05 %.
         assert told.high - told.low < 5 * np.sqrt(expected / MANY) + 0.04 * expected + 1e-3
 
