@@ -21,6 +21,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from tqdm import tqdm
@@ -105,35 +106,10 @@ class Spring:
         return threshold(lambda level: vibrated(specimen, frequency, level)[::2], guess)[0]
 
 
-@dataclass
-class Row:
-    """A quantity by the whole mesh, by modes and by segments, in a unit."""
-
-    name: str
-    unit: str
-    factor: float
-    values: tuple[float, ...]
-
-    def deviations(self) -> tuple[float, float]:
-        """Give those of modes and segments from the whole mesh, as parts."""
-        whole, modes, parts = self.values
-        return modes / whole - 1, parts / whole - 1
-
-    def cells(self) -> list[str]:
-        """Give what a table shows."""
-        whole, modes, parts = (f"{self.factor * value:.4g}" for value in self.values)
-        first, second = (percent(value) for value in self.deviations())
-        return [f"{self.name} [{self.unit}]", whole, modes, first, parts, second]
-
-
-def percent(part: float) -> str:
-    """Give a part with its sign, in per cent."""
-    return f"{round(100 * part, 2) + 0.0:+.2f} %"
-
-
-def level_row(name: str, *values: float) -> Row:
-    """Give the row of opening levels, m/s2."""
-    return Row(name, "g", 1 / GRAVITY, values)
+def deviations(table: pd.DataFrame) -> pd.DataFrame:
+    """Give those of modes and segments from the whole mesh, in per cent."""
+    parts = table[["modes", "segments"]].div(table["finite_elements"], axis=0) - 1
+    return (100 * parts).round(2) + 0.0
 
 
 def excited(frequencies: Array, participation: Array) -> Array:
@@ -141,9 +117,6 @@ def excited(frequencies: Array, participation: Array) -> Array:
     share = np.abs(participation) / np.abs(participation).max()
     found: Array = frequencies[share > LEAST]
     return found
-
-
-HEAD = ["", "finite elements", "modes", "deviation", "segments", "deviation"]
 
 
 def draw_shape(axes: Axes, elements: Elements, basis: Basis, index: int) -> None:
@@ -165,7 +138,7 @@ def draw_shape(axes: Axes, elements: Elements, basis: Basis, index: int) -> None
     axes.set_title(f"{basis.frequencies[index]:.0f} Hz", fontsize="medium", y=0.85)
 
 
-def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response: Array) -> None:
+def draw(path: Path, elements: Elements, basis: Basis, table: pd.DataFrame, response: Array) -> None:
     """Draw modes, deviations and opening levels; the response gives frequency and opening level of the whole mesh."""
     figure = plt.figure(figsize=(12, 7.6), layout="constrained")
     subfigures: Any = figure.subfigures(2, 1, height_ratios=[1, 2])
@@ -175,23 +148,24 @@ def draw(path: Path, elements: Elements, basis: Basis, rows: list[Row], response
         draw_shape(top.add_subplot(1, 4, place, projection="3d"), elements, basis, index)
     top.suptitle("Modes of the spring with its contact open, rivet not drawn")
     bars, levels = bottom.subplots(1, 2, width_ratios=[1, 1.25])
-    where = np.arange(len(rows))
-    for shift, which, colour, label in ((-0.2, 0, BLUE, "modes"), (0.2, 1, ORANGE, "segments")):
-        parts = [100 * row.deviations()[which] for row in rows]
-        drawn = bars.barh(where + shift, parts, 0.38, color=colour, label=label)
-        bars.bar_label(drawn, [percent(part / 100) for part in parts], padding=2, fontsize="x-small")
-    bars.set_yticks(where, [row.name for row in rows], fontsize="small")
+    where = np.arange(len(table))
+    for shift, which, colour in ((-0.2, "modes", BLUE), (0.2, "segments", ORANGE)):
+        drawn = bars.barh(where + shift, deviations(table)[which], 0.38, color=colour, label=which)
+        bars.bar_label(drawn, fmt="{:+.2f} %", padding=2, fontsize="x-small")
+    bars.set_yticks(where, table["quantity"], fontsize="small")
     bars.invert_yaxis()
     bars.margins(x=0.25)
     bars.axvline(0, color=BLACK, linewidth=0.8)
     bars.set(xlabel="deviation from the whole mesh [%]", title="In the component, against CalculiX")
     bars.legend(fontsize="small")
     levels.plot(*response.T, color=BLACK, label="finite elements, linear (CalculiX)")
-    resonance = next(row.values for row in rows if row.name == "closed: frequency 1")
-    opened = [(row.name.split()[2], row.values) for row in rows if row.name.startswith("opening")]
-    for which, marker, colour, label in ((1, "o", BLUE, "modes in the component"), (2, "x", ORANGE, "segments")):
-        points = [(float(resonance[which] if at == "resonance" else at), values[which]) for at, values in opened]
-        levels.plot(*zip(*points, strict=True), marker, color=colour, markersize=8, fillstyle="none", label=label)
+    opened = table[table["quantity"].str.startswith("opening")]
+    places = opened["quantity"].str.split().str[2].replace("resonance", "nan").astype(float)
+    for which, marker, colour, label in (("modes", "o", BLUE, "modes in the component"),
+                                         ("segments", "x", ORANGE, "segments")):  # fmt: skip
+        # That of the resonance is at the first frequency of the closed contact.
+        at = places.fillna(table.set_index("quantity")[which]["closed: frequency 1"])
+        levels.plot(at, GRAVITY * opened[which], marker, color=colour, markersize=8, fillstyle="none", label=label)
     levels.set(
         yscale="log", xlim=(0, BAND[1]), xlabel="frequency [Hz]", ylabel="base acceleration [m/s²]",
         title="Sine vibration that opens the contact",
@@ -236,33 +210,30 @@ def main() -> None:
     response[:, 1] = preload / response[:, 1]
 
     stage("component: compliance, frequencies")
-    rows = [Row("compliance", "mm/N", 1e3, (compliance, *(each.compliance() for each in springs)))]
+    rows = [("compliance", "mm/N", 1e3 * compliance, *(1e3 * each.compliance() for each in springs))]
     lowest = float(free[np.argmin(np.abs(free - basis.frequencies[0]))])
-    rows.append(Row("open: frequency 1", "Hz", 1.0, (lowest, *(each.open_frequency() for each in springs))))
+    rows.append(("open: frequency 1", "Hz", lowest, *(each.open_frequency() for each in springs)))
     theirs = np.array([closed[np.argmin(np.abs(closed - each))] for each in excited(*basis.closed(stiffness))[:3]])
     own = [spring.ringing(theirs) for spring in springs]
-    rows += [Row(f"closed: frequency {n}", "Hz", 1.0, each) for n, each in enumerate(zip(theirs, *own, strict=True), 1)]
+    rows += [(f"closed: frequency {n}", "Hz", *each) for n, each in enumerate(zip(theirs, *own, strict=True), 1)]
     stage("component: opening levels")
     for frequency in [BAND[0], 1000.0] if given.quick else [BAND[0], 500.0, 1000.0, 1400.0, 2000.0]:
         near, level = response[np.argmin(np.abs(response[:, 0] - frequency))]
-        rows.append(level_row(f"opening at {near:.0f} Hz", level, *(spring.opening(near) for spring in springs)))
-    level = response[:, 1].min()
-    lowest_levels = (spring.opening(each[0]) for spring, each in zip(springs, own, strict=True))
-    rows.append(level_row("opening at resonance", level, *lowest_levels))
+        found = (level, *(spring.opening(near) for spring in springs))
+        rows.append((f"opening at {near:.0f} Hz", "g", *(each / GRAVITY for each in found)))
+    found = (response[:, 1].min(), *(spring.opening(each[0]) for spring, each in zip(springs, own, strict=True)))
+    rows.append(("opening at resonance", "g", *(each / GRAVITY for each in found)))
     bar.close()
-    cells = [HEAD, *(row.cells() for row in rows)]
-    widths = [max(len(line[n]) for line in cells) for n in range(len(HEAD))]
-    for line_ in cells:
-        print("  ".join([line_[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line_[1:], widths[1:], strict=True))]))
+    table = pd.DataFrame(rows, columns=["quantity", "unit", "finite_elements", "modes", "segments"])
+    apart = deviations(table).add_suffix(": deviation [%]")
+    print(table.join(apart).to_string(index=False, float_format="{:.4g}".format))
     bending = excited(basis.frequencies, basis.participation)
     others = [f"{each:.0f}" for each in free if np.min(np.abs(bending / each - 1)) > 1e-5]
     print(f"open, across or in torsion, so not excited: {', '.join(others)} Hz")
-    table, picture = given.out / "own-spring.csv", given.out / "own-spring.png"
-    text = [",".join(["quantity", "unit", "finite_elements", "modes", "segments"])]
-    text += [f"{row.name},{row.unit}," + ",".join(f"{row.factor * v:.9g}" for v in row.values) for row in rows]
-    table.write_text("\n".join(text) + "\n", encoding="utf-8")
-    draw(picture, elements, basis, rows, response)
-    print(*files, table, picture, sep="\n")
+    paths = [given.out / name for name in ("own-spring.csv", "own-spring.png")]
+    table.to_csv(paths[0], index=False, float_format="%.9g", lineterminator="\n")
+    draw(paths[1], elements, basis, table, response)
+    print(*files, *paths, sep="\n")
 
 
 if __name__ == "__main__":
