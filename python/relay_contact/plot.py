@@ -90,8 +90,7 @@ def sweep_of(values: Mapping[str, Value]) -> list[float] | None:
     names = ["excitation.frequency", "excitation.endFrequency", "excitation.startTime", "excitation.duration"]
     if values.get("effects.excitation") != "LogSweep":
         return None
-    start_values = {"excitation.startTime": 0.0}
-    known = start_values | dict(values)
+    known = {"excitation.startTime": 0.0, **values}
     return [float(known[name]) for name in names] if all(name in known for name in names) else None
 
 
@@ -134,9 +133,8 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
                 scale * time, 0, 1, where=is_open.tolist(), step="post", transform=axes.get_xaxis_transform(),
                 color="#999999", alpha=0.25, linewidth=0, label="both open" if both else "open",
             )  # fmt: skip
-    grid[0, 0].set_title("\n".join(wrap(title, 100)), fontsize="medium")
-    if is_open.any():
         grid[0, 0].legend(loc="upper right", fontsize="small")
+    grid[0, 0].set_title("\n".join(wrap(title, 100)), fontsize="medium")
     if sweep:
         grid[-1, 0].set_xscale("log")
         grid[-1, 0].xaxis.set_major_formatter("{x:g}")

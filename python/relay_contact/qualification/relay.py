@@ -188,11 +188,7 @@ def parameters(path: Path, table: dict[str, Any], place: schema.Place, component
 
 def moved(path: Path, content: Content, component: Component) -> dict[str, Value]:
     """Return the parameters of pusher and armature, and what their tables say of the model."""
-    tables: dict[str, dict[str, Any]] = {}
-    for name in TABLES:
-        own = getattr(content, name)
-        if own is not None:
-            tables[name] = own
+    tables = {name: own for name in TABLES if (own := getattr(content, name)) is not None}
     if not tables:
         return {}
     found = schema.variables(path, tables, (), component, inputs=OF_THE_POSITION)
@@ -245,9 +241,9 @@ def uncertainties(
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
                         raise RelayContactError(f"{schema.dotted(place)}: {text}")
-            elif name in OF_THE_POSITION:
-                pass
-            elif component.variables[schema.exact(component, name, "parameter")].type != "Real":
+            elif name not in OF_THE_POSITION and (
+                component.variables[schema.exact(component, name, "parameter")].type != "Real"
+            ):
                 raise RelayContactError(f"{schema.dotted(place)}: not a real parameter")
         if name in found:
             raise schema.refused(path, place, part, "given twice")
