@@ -19,7 +19,10 @@ from results import FOLDER, STEP, SYSTEM, TOLERANCE, compare, published, record,
 def test_a_sine_given_at_the_communication_points() -> None:
     signals = staircase(["base.acceleration", "support.displacement", "contact.current"])
     stop = float(signals["time"][-1])
-    result = run({"solver.tolerance": TOLERANCE}, stop, STEP, ["contact.force"], signals)
+    start = {"solver.tolerance": TOLERANCE}
+    result = simulate_fmu(
+        str(FMU), stop_time=stop, output_interval=STEP, start_values=start, output=["contact.force"], input=signals
+    )
     compare("FMPy", fmpy.__version__, "run", result["contact.force"].tolist())
 
 

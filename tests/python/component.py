@@ -1,12 +1,9 @@
-"""The packaged component under FMPy: whole runs."""
+"""The packaged component: whole runs."""
 
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-from fmpy import simulate_fmu
-
-from relay_contact import Array, Component, Values, fmu_path
+from relay_contact import Array, Component, Scene, Values, fmu_path
+from relay_contact import run as run_scene
 
 ROOT = Path(__file__).resolve().parents[2]
 FMU = fmu_path()
@@ -22,18 +19,7 @@ STARTS = {
 
 
 def run(
-    values: Values,
-    stop: float,
-    step: float,
-    output: list[str],
-    signals: Any = None,  # noqa: ANN401
+    values: Values, stop: float, step: float, output: list[str], moved: dict[str, Array] | None = None
 ) -> dict[str, Array]:
-    """Simulate from 0 to `stop`; give time and the outputs at every communication point."""
-    start = {
-        name: value if COMPONENT.variables[name].type == "String" else COMPONENT.number(name, value)
-        for name, value in values.items()
-    }
-    result = simulate_fmu(
-        str(FMU), stop_time=stop, output_interval=step, start_values=start, output=output, input=signals
-    )
-    return {name: np.asarray(result[name]) for name in ["time", *output]}
+    """Simulate from 0 to `stop`, with inputs over time; give time and the outputs at every communication point."""
+    return run_scene(Scene("", stop, step, output, dict(values), moved or {}), component=COMPONENT).columns

@@ -170,7 +170,7 @@ class FrictionalMotion(System):
     def contact(self, state: Array) -> tuple[float, float, float, float]:
         """Give indentation (m) and its rate (m/s), deflection of the tangential spring and speed along the spring."""
         q, v, others = self.split(state)
-        return self.law.overlap(0.0, q), self.law.rate(0.0, v), float(others[0]), float(self.lever @ v)
+        return self.law.overlap(0.0, q), self.law.rate(v), float(others[0]), float(self.lever @ v)
 
     def friction(self, state: Array) -> float:
         """Friction force, N."""

@@ -36,19 +36,18 @@ class Law:
     power: float = 1.0
     offset: float = 0.0
     speed: float = 0.0
-    """Of the offset, from `start` on."""
-    start: float = 0.0
+    """Of the offset."""
     limit: float = 0.0
     """Force whose instants are noted too, N; 0: none."""
     closed_by: ClosedBy = "overlap"
 
     def overlap(self, time: float, q: Array) -> float:
         """Return the overlap, m."""
-        return float(self.offset + self.speed * max(time - self.start, 0.0) + self.row @ q)
+        return float(self.offset + self.speed * time + self.row @ q)
 
-    def rate(self, time: float, v: Array) -> float:
+    def rate(self, v: Array) -> float:
         """Return its derivative, m/s."""
-        return float((self.speed if time >= self.start else 0.0) + self.row @ v)
+        return float(self.speed + self.row @ v)
 
     def sign(self, d: float, rate: float) -> float:
         """Return a length with the sign of the force of the closed law."""
@@ -101,7 +100,7 @@ class System:
     ) -> None:
         """Take squares of angular frequencies, damping, load per base acceleration, and instants where this breaks."""
         self.squares, self.damping, self.load, self.laws, self.base = squares, damping, load, list(laws), base
-        self.count, self.kinks = len(squares), [*kinks, *(law.start for law in laws)]
+        self.count, self.kinks = len(squares), kinks
         self.pull = np.zeros(self.count)
         """Constant forces on the modes."""
         self.relative = 1e-9
@@ -135,7 +134,7 @@ class System:
         """Return the force of each law, N."""
         q, v, _ = self.split(state)
         pairs = zip(self.laws, phases, strict=True)
-        return [law.force(law.overlap(time, q), law.rate(time, v)) if phase == CLOSED else 0.0 for law, phase in pairs]
+        return [law.force(law.overlap(time, q), law.rate(v)) if phase == CLOSED else 0.0 for law, phase in pairs]
 
     def further(self, state: Array, time: float) -> tuple[Array | float, Sequence[float]]:  # noqa: ARG002
         """Return further forces on the modes, and the derivatives of what is beside the motion, such as flux (V)."""
@@ -162,7 +161,7 @@ class System:
     def watched(self, time: float, state: Array, phases: Sequence[int]) -> list[float]:
         """Return what is watched: overlap and sign of the force of each law, then the forces above their limits."""
         q, v, _ = self.split(state)
-        own = [(d := law.overlap(time, q), law.sign(d, law.rate(time, v))) for law in self.laws]
+        own = [(d := law.overlap(time, q), law.sign(d, law.rate(v))) for law in self.laws]
         forces = zip(self.laws, self.forces(time, state, phases), strict=True)
         return [*(each for pair in own for each in pair), *(force - law.limit for law, force in forces)]
 
@@ -223,7 +222,7 @@ class System:
     def phase(self, law: Law, time: float, state: Array) -> int:
         """Return the phase of a law at the begin."""
         q, v, _ = self.split(state)
-        d, rate = law.overlap(time, q), law.rate(time, v)
+        d, rate = law.overlap(time, q), law.rate(v)
         if law.closed_by == "overlap" and (d < 0 or d == 0 >= rate):
             return OPEN
         return CLOSED if law.closed_by == "nothing" or law.sign(d, rate) > 0 else LOOSE
@@ -240,7 +239,7 @@ class System:
                 changes[name, "rises" if turns[at] > 0 else "falls"].append(time)
                 continue
             law, old = self.laws[number], phases[number]
-            d, rate = law.overlap(time, q), law.rate(time, v)
+            d, rate = law.overlap(time, q), law.rate(v)
             loose = law.closed_by == "force" or (d > 0 and law.damping > 0)
             closes = old == (LOOSE if by_force else OPEN)
             after[number] = CLOSED if closes else LOOSE if by_force and loose else OPEN

@@ -238,7 +238,7 @@ class Reference:
             offset += near - self.indentation
         by: dict[str, ClosedBy] = {"Bonded": "nothing", "Linearised": "force"}
         row, closed_by = -self.modes().tip, by.get(self.law, "overlap")
-        contact = Law("contact", row, factor, self.contact_damping, power, offset, speed, 0.0, limit, closed_by)
+        contact = Law("contact", row, factor, self.contact_damping, power, offset, speed, limit, closed_by)
         spring = Spring(self, contact, near, base)
         spring.relative, spring.floor = tolerance, 1e9 * tolerance * spring.floor
         return spring.solve(times)

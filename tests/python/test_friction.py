@@ -8,11 +8,11 @@ from math import pi
 import numpy as np
 import pytest
 
-from component import COMPONENT
+from component import COMPONENT, run
 from frictional import Frictional, FrictionalMotion, Phase
-from relay_contact import Array, Contact, Values
+from relay_contact import Array, Contact, Scene, Values
+from relay_contact import run as run_scene
 from relay_contact.component import half_sine, sine
-from relay_contact.scene import Scene, run
 
 TOLERANCE, STEP = 1e-6, 5e-6
 # Instants are located to 1 ns.
@@ -69,7 +69,7 @@ class Results:
 def results(name: str) -> Results:
     """Run the component and the reference."""
     values, stop = MOTIONS[name]
-    found = run(Scene("", stop, STEP, OUTPUTS, dict(values), {})).columns
+    found = run(values, stop, STEP, OUTPUTS)
     motion = FrictionalMotion(Frictional(values), 1e-12)
     return Results(found, *motion.outputs(found["time"]), motion, motion.relay)
 
@@ -132,7 +132,7 @@ def test_the_motions_are_what_their_names_say() -> None:
 def test_the_preload_holds_the_friction_that_closing_left(values: Values) -> None:
     values = {"effects.axialForce": "None", "effects.friction": "Coulomb", **values}
     outputs = ["contact.force", "contact.tangentialForce", "contact.slip", "contact.indentation"]
-    found = {name: course[0] for name, course in run(Scene("", STEP, STEP, outputs, dict(values), {})).columns.items()}
+    found = {name: course[0] for name, course in run(values, STEP, STEP, outputs).items()}
     reference = Frictional(values)
     friction = reference.share * reference.force
     expected = [reference.force, friction, friction / reference.tangential, reference.indentation]
@@ -144,11 +144,11 @@ def test_the_preload_holds_the_friction_that_closing_left(values: Values) -> Non
 def test_friction_decides_whether_the_contact_opens() -> None:
     scene = Scene.read("friction-opening")
     outputs = ["chatter.count", "step.minimumForce"]
-    count, least = (run(scene, outputs=outputs)[name] for name in outputs)
+    count, least = (run_scene(scene, outputs=outputs)[name] for name in outputs)
     assert count[-1] == 0
     # Far from opening, a quarter of the preload.
     assert least[1:].min() > 0.25 * Frictional(scene.values).force
-    assert run(scene, outputs=outputs, friction_coefficient=0.0)["chatter.count"][-1] > 10
+    assert run_scene(scene, outputs=outputs, friction_coefficient=0.0)["chatter.count"][-1] > 10
 
 
 # Random relays that are above their tolerance, by the numbers of docs/friction.md: what all have, and what some have.

@@ -5,11 +5,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from component import run
 from one_sided import Course, Law, System, shaking
 from reference import Reference, hertz
 from relay_contact import Array, Values
 from relay_contact.component import sine
-from relay_contact.scene import Scene, run
 
 TOLERANCE, STEP = 1e-6, 5e-6
 # Instants are located to 1 ns.
@@ -70,7 +70,7 @@ def results(name: str) -> tuple[dict[str, Array], Course, Reference, float]:
     values, speeds, stop = MOTIONS[name]
     ends = np.array([0.0, stop])
     moved = {"support.displacement": speeds[0] * ends, "second.displacement": speeds[1] * ends}
-    found = run(Scene("", stop, STEP, OUTPUTS, dict(values), {"time": ends, **moved})).columns
+    found = run(values, stop, STEP, OUTPUTS, {"time": ends, **moved})
     course, relay = solved(name, PLACES, 1e-12)
     # Relative to the largest force of the run; here that of a blow.
     largest = max(found[f"{side}.force"].max() for side in SIDES)

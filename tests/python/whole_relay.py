@@ -66,13 +66,13 @@ class Relay(System):
         self,
         values: Values,
         fixed: tuple[float, float] | None = None,
-        pushed: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        pushed: tuple[float, float] = (0.0, 0.0),
         coil: Coil | None = None,
     ) -> None:
         """Build it from parameters of the component.
 
         `fixed` is the width and thickness (m) of the fixed contact's spring; `pushed` where a prescribed pusher is
-        (m), its speed (m/s) and from when on (s); without a coil the current is that of the hold force.
+        (m) and its speed (m/s); without a coil the current is that of the hold force.
         """
         known: dict[str, Any] = {**STARTS, **values}
         get = self.get = known.__getitem__
@@ -99,9 +99,8 @@ class Relay(System):
             opens, touched = np.append(opens, 0.0), np.append(touched, 1 / sqrt(mass))
         laws = [Law("contact", -opens, hertz(known), get("contact.damping"), 1.5, get("contact.overtravel"))]
         if get("effects.pusher") != "None":
-            at, speed, start = pushed
             stiffness = get("pusher.stiffness")
-            laws.append(Law("pusher", touched, stiffness, get("pusher.damping") / stiffness, 1.0, at, speed, start))
+            laws.append(Law("pusher", touched, stiffness, get("pusher.damping") / stiffness, 1.0, *pushed))
         laws += self.stops(len(squares)) if self.moves else []
         super().__init__(squares, damping, load, laws, *shaking(known), *((coil.on, coil.off) if coil else ()))
         if self.moves:
