@@ -16,11 +16,12 @@ interruptions after that start which end again. The component measures them with
 """
 
 import itertools
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, LogNorm
 from tqdm import tqdm
@@ -123,23 +124,21 @@ class Relay:
         return outcome, np.column_stack([time, *columns])
 
 
-def edges(centres: list[float]) -> Array:
+def edges(centres: Array) -> Array:
     """Give the edges of cells at equal ratios."""
     ratio = (centres[1] / centres[0]) ** 0.5
-    return np.append(np.array(centres) / ratio, centres[-1] * ratio)
+    return np.append(centres / ratio, centres[-1] * ratio)
 
 
-def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: str) -> None:
-    """Draw values over speed and damping: numbers of bounces in as many colours, times (s) on a logarithmic scale."""
-    speeds = sorted({outcome.speed for outcome in outcomes})
-    dampings = sorted({outcome.damping for outcome in outcomes})
-    grid = np.array(values).reshape(len(speeds), len(dampings)).T
-    counts = grid.dtype.kind == "i"
-    most = max(int(grid.max()), 1)
+def draw_map(axes: Axes, outcomes: pd.DataFrame, name: str, title: str) -> None:
+    """Draw outcomes over speed and damping: numbers of bounces in as many colours, times (s) on a logarithmic scale."""
+    grid, counts = outcomes.pivot(index="damping", columns="speed", values=name), name != "bounce_time"
+    most = max(int(outcomes[name].max()), 1)
     norm = BoundaryNorm(np.arange(most + 2) - 0.5, 256) if counts else LogNorm()
     shown = grid if counts else np.ma.masked_equal(1e6 * grid, 0)
     axes.set_facecolor("#E5E5E5")
-    mesh = axes.pcolormesh(1e3 * edges(speeds), 1e6 * edges(dampings), shown, cmap="cividis", norm=norm)
+    sides = 1e3 * edges(grid.columns.to_numpy()), 1e6 * edges(grid.index.to_numpy())
+    mesh = axes.pcolormesh(*sides, shown, cmap="cividis", norm=norm)
     bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02)
     if counts:
         bar.set_label("bounces")
@@ -153,7 +152,7 @@ def draw_map(axes: Axes, outcomes: list[Outcome], values: list[float], title: st
     )
 
 
-def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows: Array) -> None:
+def draw(path: Path, relay: Relay, outcomes: pd.DataFrame, shown: Outcome, rows: Array) -> None:
     """Draw the courses of one make and break, and the maps."""
     figure, ((make, count, length), (open_, delay, again)) = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
     time, force, indentation = rows.T
@@ -173,22 +172,16 @@ def draw(path: Path, relay: Relay, outcomes: list[Outcome], shown: Outcome, rows
     open_.set(xlabel="time after the actuator starts back [ms]", ylabel="gap [µm]", title="Break")
     for axes in (make, open_):
         axes.legend(fontsize="small", frameon=False)
-    draw_map(count, outcomes, [outcome.bounces for outcome in outcomes], "Make: number of bounces")
-    draw_map(length, outcomes, [outcome.bounce_time for outcome in outcomes], "Make: bounce time (grey: no bounce)")
-    draw_map(again, outcomes, [outcome.break_bounces for outcome in outcomes], "Break: number of bounces")
-    dampings = sorted({outcome.damping for outcome in outcomes})
-    for damping, colour in zip(
-        (dampings[0], dampings[len(dampings) // 2], dampings[-1]), (BLUE, ORANGE, RED), strict=True
-    ):
-        line = [outcome for outcome in outcomes if outcome.damping == damping]
-        speeds = [1e3 * outcome.speed for outcome in line]
-        delay.plot(
-            speeds, [1e3 * o.break_time for o in line], ".-", color=colour, label=f"damping {1e6 * damping:.3g} µs"
-        )
-    speeds_ = np.array(sorted({outcome.speed for outcome in outcomes}))
-    passing = 1.5 * relay.overtravel / speeds_
+    draw_map(count, outcomes, "bounces", "Make: number of bounces")
+    draw_map(length, outcomes, "bounce_time", "Make: bounce time (grey: no bounce)")
+    draw_map(again, outcomes, "break_bounces", "Break: number of bounces")
+    dampings, speeds = outcomes["damping"].unique(), outcomes["speed"].unique()
+    for damping, colour in zip(dampings[[0, len(dampings) // 2, -1]], (BLUE, ORANGE, RED), strict=True):
+        delays = 1e3 * outcomes["break_time"][outcomes["damping"] == damping]
+        delay.plot(1e3 * speeds, delays, ".-", color=colour, label=f"damping {1e6 * damping:.3g} µs")
+    passing = 1.5 * relay.overtravel / speeds
     delay.plot(
-        1e3 * speeds_, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest position"
+        1e3 * speeds, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest position"
     )
     delay.set(xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="break time [ms]")
     delay.set_title("Break: from the actuator's start to the last separation")
@@ -222,12 +215,13 @@ def main() -> None:
     dampings = 1e-6 * np.geomspace(0.1, 100, 4 if given.quick else 13)
     relay = Relay(Component(given.fmu), 1e-6 * given.gap, 1e-6 * given.overtravel, 1e-6 * given.minimum)
     shown, rows = relay.run(1e-3 * given.speed, 1e-6 * given.damping, sample=2e-6)
-    outcomes = []
+    found = []
     for speed, damping in (bar := tqdm(list(itertools.product(speeds, dampings)), unit="make and break")):
         bar.set_description(f"{1e3 * speed:5.1f} mm/s, {1e6 * damping:6.2f} µs", refresh=False)
-        outcomes.append(relay.run(float(speed), float(damping))[0])
+        found.append(relay.run(float(speed), float(damping))[0])
+    outcomes = pd.DataFrame(found)
     paths = [given.out / name for name in ("closing-bounce.csv", "closing-bounce-course.csv", "closing-bounce.png")]
-    write_table(paths[0], COLUMNS, [astuple(outcome) for outcome in [shown, *outcomes]])
+    write_table(paths[0], COLUMNS, pd.DataFrame([shown, *found]))
     write_table(paths[1], "time [s],contact.force [N],contact.indentation [m]", rows)
     draw(paths[2], relay, outcomes, shown, rows)
     print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
@@ -238,9 +232,9 @@ def main() -> None:
         f"bounces {shown.bounces}, for {1e6 * shown.bounce_time:.2f} µs, open for {1e6 * shown.open_time:.2f} µs of it"
     )
     print(f"break: bounces {shown.break_bounces}, last separation after {1e3 * shown.break_time:.3f} ms")
-    most = max(outcomes, key=lambda outcome: outcome.bounce_time)
+    most = max(found, key=lambda outcome: outcome.bounce_time)
     where = f"{1e3 * most.speed:.3g} mm/s, {1e6 * most.damping:.3g} µs"
-    calm = sum(outcome.bounces == 0 for outcome in outcomes)
+    calm = sum(outcome.bounces == 0 for outcome in found)
     print(f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}, none in {calm} of {len(outcomes)}")
     print(*paths, sep="\n")
 
