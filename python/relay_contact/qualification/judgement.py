@@ -188,14 +188,18 @@ def random(position: Position, test: Random) -> Found:
 
     What happens in the test is that around a dip of the record, raised to the size of the largest in the test.
     """
-    shaken = [each for each in position.parts if each.part == CONTACT or not each.is_endless(test)]
-    found = {each.part: random_level(each, test) for each in shaken}
+    found = {each.part: random_level(each, test) for each in shaken(position, test)}
     levels = {each.part: found[each.part][0] if each.part in found else ENDLESS for each in position.parts}
     failed, least = merged(position, [own[1:] for own in found.values()])
     shown = found[CONTACT][2]
     shown = shown[shown[:, 0] > shown[-1, 0] - SHOWN_TIME]
     curves = {"time": (shown[:, 0] - shown[0, 0]).tolist(), "course": shown[:, 1].tolist()}
     return levels, Seen(failed, dict.fromkeys(failed, f"in {three(test.duration / 60)} min"), least, curves)
+
+
+def shaken(position: Position, test: Test) -> list[Position]:
+    """Return the contact, and those of the other parts that a test shakes."""
+    return [each for each in position.parts if each.part == CONTACT or not each.is_endless(test)]
 
 
 def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Array]:
@@ -240,23 +244,11 @@ Run = tuple[str, Piece, Lengths, Array]
 def transient(position: Position, test: Transient) -> Found:
     """Run a course in its directions, or what is around its largest dips, and seek the levels that fail each part."""
     specimen = position.specimen
-    levels: dict[str, Level] = {}
-    every: list[Run] = []
-    told: dict[str, str] = {}
-    shown: list[Run] = []
-    piece: Piece | None = None
-    level = 1.0
-    for each in position.parts:
-        if each.is_endless(test) and each.part != CONTACT:
-            levels[each.part] = ENDLESS
-            continue
-        levels[each.part], runs, first, where, fails = transient_level(each, test)
-        told |= {name: where for name in specimen.names if each.part in (name, CONTACT)}
-        every += runs
-        if each.part == CONTACT:
-            shown, piece, level = runs, first, fails
-    failed, least = merged(position, [(lengths, rows) for *_, lengths, rows in every])
-    assert piece is not None
+    found = {each.part: transient_level(each, test) for each in shaken(position, test)}
+    levels = {each.part: found[each.part][0] if each.part in found else ENDLESS for each in position.parts}
+    told = {name: own[3] for part, own in found.items() for name in specimen.names if part in (name, CONTACT)}
+    failed, least = merged(position, [run[2:] for own in found.values() for run in own[1]])
+    _, shown, piece, _, level = found[CONTACT]
     start = test.record.time[0] if isinstance(test, History) else 0.0
     failing: Lengths = {}
     if isinstance(test, Shock):
