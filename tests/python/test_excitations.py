@@ -283,7 +283,7 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
         Relay.read(relay, COMPONENT)
 
 
-def test_contacts_have_their_evidence() -> None:
+def test_a_number_that_no_verdict_depends_on_is_no_evidence() -> None:
     sine = Standard.read("MIL-PRF-28776").tests[0]
     # The time of the sweep is from memory, but no verdict depends on it.
     assert sine.weakest_evidence == "read in the standard"

@@ -2,6 +2,7 @@
 
 import csv
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -176,44 +177,38 @@ def test_shock_like_a_spring_without_vibration(paper: Assessment) -> None:
     assert tested.verdict == "FAIL"
 
 
-class Elements:
-    """A spring of a file by finite elements, 0.1 mm each, with the contact as a linear spring."""
+def by_elements(values: Any, contact: float) -> Callable[[float], complex]:  # noqa: ANN401
+    """Return what gives the contact force (N) per base acceleration (m/s2) at a frequency (Hz).
 
-    SIZE = 1e-4
+    Of the spring of a file by finite elements, 0.1 mm each, with a contact of a linear stiffness (N/m).
+    """
+    file, size = tomllib.loads(Path(values["beam.file"]).read_text()), 1e-4
+    parts: list[Part] = []
+    for segment in file["segment"]:
+        number = round(segment["length"] / size)
+        begin, end = (segment.get(f"width_{end}", segment.get("width")) for end in ("start", "end"))
+        widths = np.linspace(begin, end, number + 1)
+        for area in (widths[1:] + widths[:-1]) / 2 * segment["thickness"]:
+            bending = segment["youngs_modulus"] * area * segment["thickness"] ** 2 / 12
+            parts.append((len(parts), len(parts) + 1, bending, segment["density"] * area, size))
+    stiffness, mass = assembled(len(parts) + 1, parts)
+    for each in file["mass"]:
+        place = 2 * round(each["position"] / size)
+        mass[place : place + 2, place : place + 2] += block_diag(each["mass"], each["rotary_inertia"])
+    at = 2 * round(file["contact_position"] / size)
+    mass[at, at] += values["tip.mass"]
+    stiffness[1, 1] += file["clamp_stiffness"]
+    carried = mass[:, ::2].sum(axis=1)
 
-    def __init__(self, values: Any, contact: float) -> None:  # noqa: ANN401
-        """Assemble the matrices; `contact` is the stiffness of the contact, N/m."""
-        file = tomllib.loads(Path(values["beam.file"]).read_text())
-        count = round(sum(segment["length"] for segment in file["segment"]) / self.SIZE)
-        parts: list[Part] = []
-        for segment in file["segment"]:
-            number = round(segment["length"] / self.SIZE)
-            begin, end = (segment.get(f"width_{end}", segment.get("width")) for end in ("start", "end"))
-            widths = np.linspace(begin, end, number + 1)
-            for at in range(number):
-                area = (widths[at] + widths[at + 1]) / 2 * segment["thickness"]
-                bending = segment["youngs_modulus"] * area * segment["thickness"] ** 2 / 12
-                parts.append((len(parts), len(parts) + 1, bending, segment["density"] * area, self.SIZE))
-        stiffness, mass = assembled(count + 1, parts)
-        for each in file["mass"]:
-            at = 2 * round(each["position"] / self.SIZE)
-            mass[at : at + 2, at : at + 2] += block_diag(each["mass"], each["rotary_inertia"])
-        self.at = 2 * round(file["contact_position"] / self.SIZE)
-        mass[self.at, self.at] += values["tip.mass"]
-        stiffness[1, 1] += file["clamp_stiffness"]
-        carried = mass[:, ::2].sum(axis=1)
-        # The clamp holds the deflection.
-        self.at -= 1
-        self.stiffness, self.mass, self.carried = stiffness[1:, 1:], mass[1:, 1:], carried[1:]
-        self.values, self.contact = values, contact
-
-    def force_response(self, frequency: float) -> complex:
-        """Contact force (N) per base acceleration (m/s2)."""
+    def force(frequency: float) -> complex:
         omega = 2 * np.pi * frequency
-        spring = self.contact * (1 + 1j * omega * self.values["contact.damping"])
-        matrix = self.stiffness * (1 + 1j * omega * self.values["beam.stiffnessDamping"]) - omega**2 * self.mass
-        matrix[self.at, self.at] += spring
-        return complex(-spring * np.linalg.solve(matrix, -self.carried)[self.at])
+        spring = contact * (1 + 1j * omega * values["contact.damping"])
+        matrix = stiffness * (1 + 1j * omega * values["beam.stiffnessDamping"]) - omega**2 * mass
+        matrix[at, at] += spring
+        # The clamp holds the deflection.
+        return complex(-spring * np.linalg.solve(matrix[1:, 1:], -carried[1:])[at - 1])
+
+    return force
 
 
 def test_margins_of_a_spring_of_segments_by_finite_elements(tmp_path: Path) -> None:
@@ -228,13 +223,13 @@ def test_margins_of_a_spring_of_segments_by_finite_elements(tmp_path: Path) -> N
         assert part.chance
         with COMPONENT.started(values) as contact:
             preload, stiffness = contact.real("preload.force", "preload.contactStiffness")
-        elements = Elements(values, stiffness)
+        force = by_elements(values, stiffness)
         frequency, factors = respond(COMPONENT, values, 600.0).sine(SINE, 0.0)
         near = float(frequency[factors.argmin()])
-        exact = min(preload / (30 * G * abs(elements.force_response(f))) for f in near + np.arange(-6.0, 6.1, 1.0))
+        exact = min(preload / (30 * G * abs(force(f))) for f in near + np.arange(-6.0, 6.1, 1.0))
         assert factors.min() == pytest.approx(exact, rel=5e-3)
         # A slow shock: the force that holds the spring and what it carries against the acceleration.
-        slow = preload / (100 * G * abs(elements.force_response(1.0)))
+        slow = preload / (100 * G * abs(force(1.0)))
         assert part.margin == pytest.approx(slow, rel=0.02)
         assert tested.verdict == "pass"
         assert part.chance.effects["contact.overtravel"] == pytest.approx(0.05, rel=0.01)
