@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from relay_contact.files import RelayContactError
 
-STYLE = {
+STYLE: Any = {
     "font.size": 8, "axes.titlesize": 9, "legend.fontsize": 7.5, "legend.frameon": False, "axes.grid": True,
     "grid.alpha": 0.3, "svg.hashsalt": "relay-contact",
 }  # fmt: skip

@@ -149,8 +149,7 @@ def signs(table: Table) -> None:
     if np.median(force) < 0:
         text = "negative in most rows: not allowed, allowed is compression as positive; change its sign"
         raise table.wrong(f"column force: {text}")
-    x, y = travel - travel.mean(), force - force.mean()
-    if (x * y).sum() < OPPOSITE * np.sqrt((x**2).sum() * (y**2).sum()):
+    if np.corrcoef(travel, force)[0, 1] < OPPOSITE:
         text = "the force falls as it rises: not allowed, allowed is travel that presses as positive; change its sign"
         raise table.wrong(f"column travel: {text}")
 

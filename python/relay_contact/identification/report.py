@@ -2,7 +2,6 @@
 
 import csv
 from pathlib import Path
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -140,8 +139,7 @@ def draw(result: Identification) -> Figure:
 def write(folder: Path, result: Identification, component: Component) -> None:
     """Write the relay's file, page, figure and table."""
     folder.mkdir(parents=True, exist_ok=True)
-    settings: Any = pages.STYLE
-    with mpl.rc_context(settings):
+    with mpl.rc_context(pages.STYLE):
         figure = draw(result)
         figure.savefig(folder / FILES[1], dpi=130)
         page = pages.render(

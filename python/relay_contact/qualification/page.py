@@ -287,8 +287,7 @@ def limit(standard: Standard) -> str:
 def write(assessment: Assessment, component: Component, date: str = "", pdf: bool = False) -> None:
     """Write page and tables."""
     folder = assessment.folder
-    settings: Any = pages.STYLE
-    with mpl.rc_context(settings):
+    with mpl.rc_context(pages.STYLE):
         page = html(assessment, component, date)
     (folder / FILES[0]).write_text(page, encoding="utf-8")
     assessment.write()
