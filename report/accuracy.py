@@ -30,6 +30,7 @@ FORCE, INSTANTS = (
     "error of the instants of opening and closing / µs",
 )
 ERRORS = ("force_error", "event_error_us")
+"""Columns of errors: of the force, and of instants."""
 USELESS = {True: 10.0, False: 1.0}
 """Larger errors are not drawn, us and relative to the preload: such a run is of no use."""
 VERDICT = "From tolerances of"
@@ -40,7 +41,7 @@ TIMES = "\N{MULTIPLICATION SIGN}"
 
 def read() -> pd.DataFrame:
     """Return what was measured; a run that has no error has an infinite one."""
-    found = pd.read_csv(MEASURED, dtype={"modes": str})
+    found = pd.read_csv(MEASURED, dtype={"modes": str}, float_precision="round_trip")
     return found.fillna(dict.fromkeys(ERRORS, np.inf))
 
 
