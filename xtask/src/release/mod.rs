@@ -6,7 +6,7 @@ pub mod platform;
 pub mod tools;
 pub mod trial;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use crate::commands::write;
@@ -15,7 +15,7 @@ use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
 use sha2::{Digest, Sha256};
 
-use self::platform::{PLATFORMS, Platform, WHEELS};
+use self::platform::{PLATFORMS, Platform};
 use self::tools::Tools;
 use crate::package::pack;
 use crate::variant::Variant;
@@ -65,20 +65,13 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
     explore::page()?;
-    for wheel in &WHEELS {
-        let carried: Vec<_> = libraries
-            .iter()
-            .filter(|(platform, _)| platform.is_of(wheel))
-            .cloned()
-            .collect();
-        if !carried.is_empty() {
-            let tag = wheel.tag();
-            let path = build::folder(&metadata)
-                .join("wheels")
-                .join(&tag)
-                .join("RelayContact.fmu");
-            wheel::build(&write(path, &release.packed(&carried)?)?, "dist/release", Some(&tag))?;
-        }
+    let wheels: BTreeSet<_> = libraries.iter().map(|(platform, _)| platform.wheel).collect();
+    for wheel in wheels {
+        let carried = libraries.iter().filter(|(platform, _)| platform.wheel == wheel);
+        let carried = release.packed(&carried.cloned().collect::<Vec<_>>())?;
+        let folder = build::folder(&metadata).join("wheels").join(wheel);
+        let component = write(folder.join("RelayContact.fmu"), &carried)?;
+        wheel::build(&component, "dist/release", Some(wheel))?;
     }
     println!("== FMPy");
     if runs_here {
