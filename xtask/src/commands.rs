@@ -1,4 +1,4 @@
-//! Running other programs in the project's folder, and its files: for the task runner and the report.
+//! Running other programs in the project's folder, and its files.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,21 +6,12 @@ use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
 
-/// The project's top folder: that of the program which cargo runs, or the one that the current folder is in.
+/// The project's top folder: that of the package which cargo runs, or the current one.
 pub fn root() -> PathBuf {
     // At run time, so that a copy of the project with its `target` folder uses its own files.
-    let start = env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from("."), PathBuf::from);
-    workspace(&start).unwrap_or(start)
-}
-
-/// The workspace containing a folder.
-fn workspace(folder: &Path) -> Option<PathBuf> {
-    let folder = std::path::absolute(folder).ok()?;
-    let is_workspace = |folder: &&Path| {
-        let manifest = fs::read_to_string(folder.join("Cargo.toml"));
-        manifest.is_ok_and(|text| text.lines().any(|line| line.trim() == "[workspace]"))
-    };
-    folder.ancestors().find(is_workspace).map(Path::to_owned)
+    let package = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let top = package.as_deref().and_then(Path::parent);
+    top.map_or_else(|| PathBuf::from("."), Path::to_owned)
 }
 
 /// Reads a file of the project.
@@ -91,23 +82,4 @@ pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
 fn line(command: &Command) -> String {
     let words = [command.get_program()].into_iter().chain(command.get_args());
     words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_copy_of_the_project_is_its_own_workspace() -> Result<()> {
-        assert!(root().join("modelDescription.xml").exists());
-        let copy = tempfile::tempdir()?;
-        let member = copy.path().join("xtask");
-        fs::create_dir_all(member.join("src"))?;
-        fs::write(copy.path().join("Cargo.toml"), "[workspace]\nmembers = [\"xtask\"]\n")?;
-        fs::write(member.join("Cargo.toml"), "[package]\nname = \"xtask\"\n")?;
-        for start in [copy.path(), &member, &member.join("src")] {
-            assert_eq!(workspace(start).as_deref(), Some(copy.path()));
-        }
-        Ok(())
-    }
 }

@@ -67,32 +67,14 @@ fn text(name: &str) -> Result<String> {
     String::from_utf8(read(&path)?).with_context(|| path.display().to_string())
 }
 
-/// The library in WebAssembly. The standard library is compiled with it, as for all platforms of the release.
+/// The library in WebAssembly.
 fn library() -> Result<Vec<u8>> {
     let metadata = linked::metadata()?;
     let rust = Rust::find()?;
-    let folder = build::folder(&metadata);
-    let mut flags = fmu::path_flags(&metadata);
-    flags.extend(rust.path_flags());
-    flags.push(format!("-Clinker={}", lld(&rust.rustc)?.display()));
+    let linker = format!("-Clinker={}", lld(&rust.rustc)?.display());
     let mut build = cargo();
-    build
-        // The shared library only, as otherwise it is not optimised across crates.
-        .args([
-            "rustc",
-            "--release",
-            "--package=explore",
-            "--lib",
-            "--crate-type=cdylib",
-        ])
-        .args(["-Zbuild-std=std,panic_abort", "-Zbuild-std-features="])
-        .arg(format!("--target={TARGET}"))
-        .arg("--target-dir")
-        .arg(&folder)
-        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
-        .env_remove("RUSTC_WRAPPER")
-        .env("RUSTC", &rust.rustc)
-        .env("RUSTC_BOOTSTRAP", "1");
-    run(&mut build)?;
-    read(folder.join(TARGET).join("release/explore.wasm"))
+    build.args(fmu::CARGO_RUSTC).arg("--package=explore");
+    build::with_std(&mut build, &rust, "panic_abort", vec![linker], &metadata);
+    run(build.arg(format!("--target={TARGET}")))?;
+    read(build::folder(&metadata).join(TARGET).join("release/explore.wasm"))
 }

@@ -38,18 +38,12 @@ pub fn build_variant(variant: &Variant) -> Result<PathBuf> {
     write(format!("dist/{}.fmu", variant.name), &pack(&files)?)
 }
 
-/// Cargo's arguments to build the shared library only, as otherwise it is not optimised across crates.
-pub const CARGO_RUSTC: [&str; 5] = [
-    "rustc",
-    "--release",
-    "--package=relay-contact",
-    "--lib",
-    "--crate-type=cdylib",
-];
+/// Cargo's arguments to build a package's shared library only, as otherwise it is not optimised across crates.
+pub const CARGO_RUSTC: [&str; 4] = ["rustc", "--release", "--lib", "--crate-type=cdylib"];
 
 fn build_library(metadata: &Metadata) -> Result<()> {
     let mut build = cargo();
-    build.args(CARGO_RUSTC);
+    build.args(CARGO_RUSTC).arg("--package=relay-contact");
     // Cargo takes rustc's flags from one place only, so these are added to the user's.
     let given = |name, separator: char| {
         let flags = env::var(name).ok()?;

@@ -2,7 +2,6 @@
 
 mod bill;
 mod commands;
-mod demo;
 mod documentation;
 mod explore;
 mod fmu;
@@ -24,6 +23,7 @@ mod wheel;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use self::variant::Variant;
@@ -87,7 +87,7 @@ fn main() -> ExitCode {
         Task::Wheel => wheel::run(),
         Task::Explore => explore::run_task(),
         Task::Docs => site::run(),
-        Task::Demo => demo::run(),
+        Task::Demo => demo(),
         Task::Accuracy(arguments) => report::accuracy(&arguments),
         Task::Effects => report::effects(),
         Task::Report(arguments) => report::run(&arguments),
@@ -104,4 +104,13 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// The published 1 kHz case in FMPy, including all preparation.
+fn demo() -> Result<()> {
+    // Python first, so that missing programs are reported before the build.
+    python::prepare()?;
+    let path = fmu::build()?;
+    let mut python = commands::python();
+    commands::run(python.args(["examples/python/paper_1khz.py", "--fmu"]).arg(path))
 }

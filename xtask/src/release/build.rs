@@ -1,13 +1,14 @@
 //! Builds the library for any platform on this machine.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::commands::{cargo, command, read, run, write};
 use anyhow::{Context, Result};
 use cargo_metadata::Metadata;
 
 use super::check::{declared, without_time};
-use super::tools::{Tools, lld};
+use super::tools::{Rust, Tools, lld};
 use crate::fmu;
 
 /// Oldest C library of Linux on which the libraries load.
@@ -20,46 +21,28 @@ pub fn folder(metadata: &Metadata) -> PathBuf {
     metadata.target_directory.as_std_path().join("platforms")
 }
 
-/// Builds the library for `target`, the platform as rustc calls it. The standard library is compiled with it, without what
-/// prints backtraces: that would be an eighth of the size.
+/// Builds the library for `target`, the platform as rustc calls it.
 pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u8>> {
     let folder = folder(metadata);
-    let mut flags = fmu::path_flags(metadata);
-    flags.extend(tools.rust.path_flags());
+    let (mut flags, mut version) = (Vec::new(), String::new());
+    let mut build = command(&tools.zigbuild);
+    build.env("CARGO_ZIGBUILD_ZIG_PATH", &tools.zig);
     if target.contains("windows") {
         flags.push(format!("-Clink-arg={}", exports(&folder)?.display()));
-    }
-    let mut build = if target.contains("apple") {
+    } else if target.contains("apple") {
         flags.extend(apple_flags(&lld(&tools.rust.rustc)?));
-        let mut build = cargo();
+        build = cargo();
         build.env("SDKROOT", sdk(&tools.zig, &folder)?);
         // The linker strips: rustc would ask for a program that is not there.
         build
             .env("MACOSX_DEPLOYMENT_TARGET", MACOS)
             .env("CARGO_PROFILE_RELEASE_STRIP", "none");
-        build
     } else {
-        let mut build = command(&tools.zigbuild);
-        build.env("CARGO_ZIGBUILD_ZIG_PATH", &tools.zig);
-        build
-    };
-    build.args(fmu::CARGO_RUSTC);
-    build.args(["-Zbuild-std=std,panic_unwind", "-Zbuild-std-features="]);
-    let version = if target.contains("linux") {
-        format!(".{GLIBC}")
-    } else {
-        String::new()
-    };
-    build
-        .arg(format!("--target={target}{version}"))
-        .arg("--target-dir")
-        .arg(&folder);
-    // Of the user's flags none: the same archive everywhere.
-    build
-        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
-        .env_remove("RUSTC_WRAPPER");
-    build.env("RUSTC", &tools.rust.rustc).env("RUSTC_BOOTSTRAP", "1");
-    run(&mut build)?;
+        version = format!(".{GLIBC}");
+    }
+    build.args(fmu::CARGO_RUSTC).arg("--package=relay-contact");
+    with_std(&mut build, &tools.rust, "panic_unwind", flags, metadata);
+    run(build.arg(format!("--target={target}{version}")))?;
     let release = folder.join(target).join("release");
     let names = ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"];
     let paths = names.map(|name| release.join(name));
@@ -70,6 +53,22 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
     } else {
         Ok(library)
     }
+}
+
+/// Lets cargo compile the standard library too, with this crate for panics and without what prints backtraces: that would be an
+/// eighth of the size. The flags are for rustc, which removes the folders of this machine.
+pub fn with_std(build: &mut Command, rust: &Rust, panic: &str, flags: Vec<String>, metadata: &Metadata) {
+    let paths = fmu::path_flags(metadata).into_iter().chain(rust.path_flags());
+    let flags: Vec<_> = paths.chain(flags).collect();
+    build
+        .args([&format!("-Zbuild-std=std,{panic}"), "-Zbuild-std-features="])
+        .arg("--target-dir")
+        .arg(folder(metadata))
+        // Of the user's flags none: the same archive everywhere.
+        .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
+        .env_remove("RUSTC_WRAPPER")
+        .env("RUSTC", &rust.rustc)
+        .env("RUSTC_BOOTSTRAP", "1");
 }
 
 fn apple_flags(lld: &Path) -> Vec<String> {
