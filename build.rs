@@ -22,6 +22,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use heck::{ToShoutySnakeCase, ToUpperCamelCase};
 use roxmltree::{Document, Node};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -108,17 +109,9 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
             .iter()
             .position(|(name, _)| *name == group)
             .ok_or(format!("{name}: no group {group} in build.rs"))?;
-        let variant = camel(name);
-        let description = attribute(variable, "description")?;
-        let unit_note = if unit.is_empty() {
-            String::new()
-        } else {
-            format!(" \\[{unit}\\]")
-        };
-        writeln!(
-            members[position],
-            "    /// `{name}`: {description}{unit_note}.\n    {variant},"
-        )?;
+        let variant = name.to_upper_camel_case();
+        let doc = scene::doc(document, variable, value)?;
+        writeln!(members[position], "    /// {doc}.\n    {variant},")?;
         writeln!(arms[position], "            Self::{variant} => &VARIABLES[{index}],")?;
         write!(all[position], "Self::{variant}, ")?;
         let number = |name: &str, default: &str| {
@@ -256,35 +249,6 @@ fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, String> {
         .ok_or_else(|| format!("{:?} has no attribute {name}", node.tag_name().name()))
 }
 
-/// `contact.moving.youngsModulus` becomes `ContactMovingYoungsModulus`.
-fn camel(name: &str) -> String {
-    name.split('.')
-        .flat_map(|word| {
-            word.chars()
-                .take(1)
-                .map(|c| c.to_ascii_uppercase())
-                .chain(word.chars().skip(1))
-        })
-        .collect()
-}
-
-/// `youngsModulus` becomes `youngs_modulus`.
-fn snake(name: &str) -> String {
-    upper(name).to_ascii_lowercase()
-}
-
-/// `contact.moving.youngsModulus` becomes `CONTACT_MOVING_YOUNGS_MODULUS`.
-fn upper(name: &str) -> String {
-    name.chars()
-        .enumerate()
-        .flat_map(|(position, c)| match c {
-            '.' => vec!['_'],
-            c if c.is_ascii_uppercase() && position > 0 => vec!['_', c],
-            c => vec![c.to_ascii_uppercase()],
-        })
-        .collect()
-}
-
 /// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
 fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
     let mut code = format!(
@@ -305,7 +269,7 @@ fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
             "\n/**\n * `{name}`, {}{unit}: {}.\n */\n#define RELAY_CONTACT_{} {}u",
             value.tag_name().name(),
             attribute(variable, "description")?,
-            upper(name),
+            name.to_shouty_snake_case(),
             attribute(variable, "valueReference")?
         )?;
     }
@@ -315,8 +279,8 @@ fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
             code,
             "\n/**\n * {}.\n */\n#define RELAY_CONTACT_{}_{} {}",
             attribute(item, "description")?,
-            upper(attribute(kind.ok_or("an item without a type")?, "name")?),
-            upper(attribute(item, "name")?),
+            attribute(kind.ok_or("an item without a type")?, "name")?.to_shouty_snake_case(),
+            attribute(item, "name")?.to_shouty_snake_case(),
             attribute(item, "value")?
         )?;
     }

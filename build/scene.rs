@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write as _;
 
+use heck::{ToSnakeCase, ToUpperCamelCase};
 use roxmltree::{Document, Node};
 
-use crate::{attribute, camel, snake, start, unit};
+use crate::{attribute, start, unit};
 
 /// What the groups of parameters describe.
 const GROUPS: [(&str, &str); 15] = [
@@ -56,7 +57,7 @@ impl Fields {
 }
 
 /// What is said of a variable, with its unit.
-fn doc(document: &Document, variable: Node, value: Node) -> Result<String, Box<dyn Error>> {
+pub fn doc(document: &Document, variable: Node, value: Node) -> Result<String, Box<dyn Error>> {
     let note = match unit(document, value) {
         "" => String::new(),
         unit => format!(" \\[{unit}\\]"),
@@ -82,18 +83,18 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
         let parts: Vec<_> = name.split('.').collect();
         let path = match parts[..] {
             [group, field] => {
-                let field = snake(field);
+                let field = field.to_snake_case();
                 groups.entry(group).or_default().add(&doc, &field, &rust, &start)?;
                 format!("{group}.{field}")
             }
             [group, of, field] => {
-                let field = snake(field);
+                let field = field.to_snake_case();
                 inner.entry((group, of)).or_default().add(&doc, &field, &rust, &start)?;
                 format!("{group}.{of}.{field}")
             }
             _ => return Err(format!("{name}: build/scene.rs knows groups within groups only").into()),
         };
-        let variant = camel(name);
+        let variant = name.to_upper_camel_case();
         let Arms { read, write } = arms.entry(kind).or_default();
         if kind == "Enumeration" {
             writeln!(
@@ -136,7 +137,7 @@ fn structs(
                 own.add(&format!("`{group}.{of}`"), of, kind, &start)?;
             }
         }
-        let name = camel(group);
+        let name = group.to_upper_camel_case();
         writeln!(code, "/// {doc}\n{DERIVE}pub struct {name} {{\n{}}}", own.code)?;
         writeln!(fields, "    /// {doc}\n    pub {group}: {name},")?;
         writeln!(all, "            {group}: {name} {{ {}}},", own.starts)?;
@@ -195,7 +196,8 @@ pub fn inputs(document: &Document, list: &Node) -> Result<String, Box<dyn Error>
             continue;
         }
         let name = attribute(variable, "name")?;
-        let (field, variant, (_, start)) = (snake(name), camel(name), start(document, value)?);
+        let (field, variant) = (name.to_snake_case(), name.to_upper_camel_case());
+        let (_, start) = start(document, value)?;
         values.add(&doc(document, variable, value)?, &field, "f64", &start)?;
         let of = format!("Rate of `{name}` \\[{} per s\\]", unit(document, value));
         rates.add(&of, &format!("{field}_rate"), "f64", "0.0")?;
