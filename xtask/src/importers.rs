@@ -3,7 +3,7 @@
 //! [`prepare`] writes reference runs and a system of two contacts to `out/conformance`; the tests under `conformance/` compare
 //! with them and each write a row of the table of results there.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -18,16 +18,8 @@ use crate::{fmu, python, reference};
 
 const FOLDER: &str = "out/conformance";
 
-/// Tests in `conformance/python` that write rows of the table.
-const WITH_ROWS: [&str; 7] = [
-    "conformance/python/test_container.py",
-    "conformance/python/test_ecos.py",
-    "conformance/python/test_fmpy.py",
-    "conformance/python/test_libcosim.py",
-    "conformance/python/test_scenes.py",
-    "conformance/python/test_state.py",
-    "conformance/python/test_validate.py",
-];
+/// Tests of the importers that are called from Python.
+const PYTHON: &str = "conformance/python";
 
 /// Builds the component and tests it in all importers.
 pub fn run() -> Result<()> {
@@ -39,11 +31,10 @@ pub fn run() -> Result<()> {
 /// The component in all importers, and the table of results.
 pub fn stages(component: &Path) -> Result<()> {
     stage("reference runs", || prepare(component))?;
-    stage("Python importers", || python::test(&["conformance/python"], component))?;
+    stage("Python importers", || python::test(&[PYTHON], component))?;
     stage("Rust importer", || {
         let mut test = workspace("test")?;
-        test.args(rust_tests()?);
-        run_command(test.env("RELAY_CONTACT_FMU", component))
+        run_command(test.arg("--test=importers").env("RELAY_CONTACT_FMU", component))
     })?;
     stage("importers", || python::report("importers", &[""; 0]))
 }
@@ -51,7 +42,7 @@ pub fn stages(component: &Path) -> Result<()> {
 /// The rows shown in the full report: importers called from Python.
 pub fn for_report(component: &Path) -> Result<()> {
     prepare(component)?;
-    python::test(&WITH_ROWS, component)
+    python::test(&[PYTHON], component)
 }
 
 /// Writes the reference runs, the system of two contacts and variants of the component; clears the table.
@@ -73,18 +64,6 @@ fn prepare(component: &Path) -> Result<()> {
     ]);
     write(format!("{FOLDER}/two-contacts.ssp"), &pack(&system)?)?;
     Ok(())
-}
-
-/// Cargo's arguments for all tests of the conformance crate.
-fn rust_tests() -> Result<Vec<String>> {
-    let mut tests = Vec::new();
-    for entry in fs::read_dir(root().join("conformance/tests")).context("cannot list the tests of importers")? {
-        let path = entry?.path();
-        if let (Some("rs"), Some(name)) = (path.extension().and_then(OsStr::to_str), path.file_stem()) {
-            tests.push(format!("--test={}", name.to_string_lossy()));
-        }
-    }
-    Ok(tests)
 }
 
 /// Cargo's command for all packages but benches, whose integrators take long to compile. The selection is the same for each
