@@ -56,7 +56,7 @@ function search() {
   }, 300);
 }
 
-// ---- what the library gives: the order is that of `Curves::numbers` ----
+// ---- what the library gives: the order is that of `curves` ----
 function read({ numbers, taken }) {
   const [count, rows, events, preload, frequency, longest, total, forceError] = numbers;
   const column = (n) => Float64Array.from({ length: rows }, (_, row) => numbers[8 + 6 * row + n]);

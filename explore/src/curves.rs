@@ -23,60 +23,34 @@ const SUMMARY: [RealOutput; 5] = [
     RealOutput::SolverForceError,
 ];
 
-/// A run.
-pub struct Curves {
-    /// Time (s), then the outputs of each column, at each communication point.
-    rows: Vec<[f64; 1 + COLUMNS.len()]>,
-    /// Instants of openings (1) and closings (0), s.
-    events: Vec<(f64, f64)>,
-    summary: [f64; SUMMARY.len()],
-    interruptions: i32,
-}
-
-impl Curves {
-    /// Interruptions, rows, events, the summary, all rows, all events.
-    pub fn numbers(&self) -> Vec<f64> {
-        let counts = [
-            f64::from(self.interruptions),
-            self.rows.len() as f64,
-            self.events.len() as f64,
-        ];
-        let events = self.events.iter().flat_map(|(time, opens)| [*time, *opens]);
-        let head = counts.into_iter().chain(self.summary);
-        head.chain(self.rows.iter().flatten().copied()).chain(events).collect()
-    }
-
-    fn record(&mut self, contact: &Simulation) {
-        let mut row = [contact.time(); 1 + COLUMNS.len()];
-        for (value, output) in row.iter_mut().skip(1).zip(COLUMNS) {
-            *value = contact.real(output);
-        }
-        self.rows.push(row);
-        let events = contact.events().0.filter(|event| event.link == 0);
-        self.events
-            .extend(events.map(|event| (event.time, f64::from(u8::from(!event.closes)))));
-    }
-}
-
-/// Runs a scene file, given as text.
-pub fn curves(text: &str) -> Result<Curves, RunError> {
+/// Runs a scene file, given as text. Gives the number of interruptions, of communication points and of events, then the
+/// summary, then for each communication point its time (s) and columns, and for each event its instant (s) and 1 for an opening,
+/// 0 for a closing.
+pub fn curves(text: &str) -> Result<Vec<f64>, RunError> {
     let file: SceneFile = text.parse()?;
     let start = file.inputs_over(0.0, file.communication_step)?;
     let mut contact = Simulation::new(&file.scene, &start, 0.0)?;
-    let mut curves = Curves {
-        rows: Vec::new(),
-        events: Vec::new(),
-        summary: [0.0; SUMMARY.len()],
-        interruptions: 0,
+    let (mut rows, mut events) = (Vec::new(), Vec::new());
+    let mut record = |contact: &Simulation| {
+        rows.push(
+            [contact.time()]
+                .into_iter()
+                .chain(COLUMNS.map(|output| contact.real(output))),
+        );
+        let own = contact.events().0.filter(|event| event.link == 0);
+        events.extend(own.map(|event| [event.time, f64::from(u8::from(!event.closes))]));
     };
-    curves.record(&contact);
+    record(&contact);
     for (time, size) in file.steps() {
         contact.step(&file.inputs_over(time, size)?, time, size)?;
-        curves.record(&contact);
+        record(&contact);
     }
-    curves.summary = SUMMARY.map(|output| contact.real(output));
-    curves.interruptions = contact.integer(IntegerOutput::ChatterCount);
-    Ok(curves)
+    let interruptions = f64::from(contact.integer(IntegerOutput::ChatterCount));
+    let mut numbers = vec![interruptions, rows.len() as f64, events.len() as f64];
+    numbers.extend(SUMMARY.map(|output| contact.real(output)));
+    numbers.extend(rows.into_iter().flatten());
+    numbers.extend(events.into_iter().flatten());
+    Ok(numbers)
 }
 
 #[cfg(test)]
@@ -88,22 +62,19 @@ mod tests {
 
     #[test]
     fn the_numbers_are_laid_out_as_the_page_reads_them() -> Result<(), RunError> {
-        let curves = curves(SCENE)?;
-        let numbers = curves.numbers();
+        let numbers = curves(SCENE)?;
         let [count, rows, events] = [numbers[0], numbers[1], numbers[2]];
         // It is open at the end.
         assert_eq!((rows, count, events), (401.0, 4.0, 7.0));
-        let after = 8 + 6 * curves.rows.len();
-        assert_eq!(numbers.len(), after + 2 * curves.events.len());
+        let after = 8 + 6 * 401;
+        assert_eq!(numbers.len(), after + 2 * 7);
         assert_eq!(numbers[after - 6], 0.004);
         // Open for as long as the interruptions say, but for the time with little force before and after.
-        let closings = curves.events.iter().skip(1).step_by(2).chain([&(0.004, 0.0)]);
-        let openings = curves.events.iter().step_by(2);
-        let open: f64 = openings
-            .zip(closings)
-            .map(|(opening, closing)| closing.0 - opening.0)
-            .sum();
-        assert!(curves.events.iter().step_by(2).all(|event| event.1 == 1.0));
+        let mut open = 0.004;
+        for (event, opens) in numbers[after..].chunks(2).zip([1.0, 0.0].into_iter().cycle()) {
+            assert_eq!(event[1], opens);
+            open += (1.0 - 2.0 * opens) * event[0];
+        }
         assert!(
             open > 0.0 && open <= numbers[6] && numbers[6] < 1.1 * open,
             "{open} {}",
@@ -114,14 +85,7 @@ mod tests {
 
     #[test]
     fn a_value_out_of_range_is_refused_by_its_name() {
-        let failure = curves(&SCENE.replace("400", "-1e99"))
-            .map(|_| ())
-            .map_err(|failure| failure.to_string());
-        assert!(
-            failure
-                .as_ref()
-                .is_err_and(|text| text.contains("excitation.amplitude")),
-            "{failure:?}"
-        );
+        let failure = curves(&SCENE.replace("400", "-1e99")).map_err(|failure| failure.to_string());
+        assert!(failure.is_err_and(|text| text.contains("excitation.amplitude")));
     }
 }

@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use relay_contact::many::RunError;
 
-pub use curves::{Curves, curves};
+pub use curves::curves;
 pub use level::level;
 
 struct Buffers {
@@ -49,10 +49,10 @@ pub extern "C" fn scene_text(length: usize) -> *mut u8 {
     buffers.text.as_mut_ptr()
 }
 
-/// Runs the scene: the numbers of [`Curves::numbers`].
+/// Runs the scene: the numbers of [`curves`].
 #[unsafe(no_mangle)]
 pub extern "C" fn run_scene() -> usize {
-    keep(|text| Ok(curves(text)?.numbers()))
+    keep(curves)
 }
 
 /// The level of [`level`] at a frequency (Hz), m/s², and that of linear theory.
