@@ -4,6 +4,8 @@
 
 #[path = "build/collocation.rs"]
 mod collocation;
+#[path = "build/description.rs"]
+mod description;
 #[path = "src/fingerprint.rs"]
 mod fingerprint;
 #[path = "build/plain.rs"]
@@ -22,6 +24,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use description::{declared, unit};
 use heck::{ToShoutySnakeCase, ToUpperCamelCase};
 use roxmltree::{Document, Node};
 
@@ -179,22 +182,6 @@ fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn E
             (kind.to_owned(), format!("{kind}::{}", attribute(choice, "name")?))
         }
     })
-}
-
-/// The definition of the type a value is declared as.
-fn declared<'a, 'input>(document: &'a Document<'input>, value: Node) -> Option<Node<'a, 'input>> {
-    let declared = value.attribute("declaredType")?;
-    document
-        .descendants()
-        .find(|node| node.has_tag_name("SimpleType") && node.attribute("name") == Some(declared))
-}
-
-/// The unit of a value, by the type it is declared as; empty where there is none.
-fn unit<'a>(document: &'a Document, value: Node) -> &'a str {
-    declared(document, value)
-        .and_then(|definition| definition.first_element_child())
-        .and_then(|real| real.attribute("unit"))
-        .unwrap_or("")
 }
 
 /// For each value reference up to the largest, the index of its variable in the table; `u16::MAX` for none.

@@ -5,7 +5,7 @@ use std::error::Error;
 
 use roxmltree::{Document, Node};
 
-use crate::declared;
+use crate::description::declared;
 
 /// The plain description. What the numbers stand for moves to the descriptions of the variables.
 pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {

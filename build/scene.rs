@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use heck::{ToSnakeCase, ToUpperCamelCase};
 use roxmltree::{Document, Node};
 
-use crate::{attribute, start, unit};
+use crate::description::unit;
+use crate::{attribute, start};
 
 /// What the groups of parameters describe.
 const GROUPS: [(&str, &str); 15] = [

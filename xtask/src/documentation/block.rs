@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use roxmltree::{Document, Node};
 
-use super::description::{attribute, unit};
+use super::description::unit;
 
 /// Between two variables, and sizes of the block and of what is beside it, in pixels.
 const PITCH: usize = 22;
@@ -45,7 +45,12 @@ pub fn block(document: &Document) -> Markup {
     }
 }
 
-fn variables<'a>(document: &'a Document, causality: &str) -> Vec<Node<'a, 'a>> {
+/// An attribute, or nothing.
+pub fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
+    node.attribute(name).unwrap_or("")
+}
+
+pub fn variables<'a>(document: &'a Document, causality: &str) -> Vec<Node<'a, 'a>> {
     let variables = document
         .descendants()
         .filter(|node| node.has_tag_name("ScalarVariable"));

@@ -2,6 +2,7 @@
 //! words from the README and the page on spring files, so that none is written twice.
 
 mod block;
+#[path = "../../../build/description.rs"]
 mod description;
 
 use crate::commands::read;
@@ -10,8 +11,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use roxmltree::{Document, Node};
 
-use self::block::block;
-use self::description::{attribute, start, unit};
+use self::block::{attribute, block, variables};
+use self::description::{declared, unit};
 use crate::variant::Variant;
 
 /// That of the report.
@@ -51,7 +52,7 @@ pub fn page(variant: &Variant) -> Result<String> {
                 @for (title, causality) in [("Inputs", "input"), ("Outputs", "output"),
                     ("Calculated parameters", "calculatedParameter"), ("Parameters", "parameter")] {
                     h2 { (title) }
-                    (scroll(title, &variables(&document, causality)))
+                    (scroll(title, &table(&document, causality)))
                 }
                 @if let Some(choices) = choices(&document) {
                     h2 { "Choices" }
@@ -99,14 +100,23 @@ fn scroll(label: &str, content: &Markup) -> Markup {
     html! { div.scroll role="region" tabindex="0" aria-label=(label) { (content) } }
 }
 
-fn variables(document: &Document, causality: &str) -> Markup {
-    let rows = document
-        .descendants()
-        .filter(|node| node.has_tag_name("ScalarVariable") && attribute(*node, "causality") == causality);
+/// The start value; of an enumeration, the choice's name.
+fn start<'a>(document: &'a Document, value: Node<'a, 'a>) -> &'a str {
+    let start = attribute(value, "start");
+    let items = declared(document, value)
+        .into_iter()
+        .flat_map(|declared| declared.descendants());
+    let mut items = items.filter(|item| item.has_tag_name("Item"));
+    items
+        .find(|item| attribute(*item, "value") == start)
+        .map_or(start, |item| attribute(item, "name"))
+}
+
+fn table(document: &Document, causality: &str) -> Markup {
     html! {
         table {
             tr { th { "name" } th { "type" } th { "unit" } th { "causality" } th { "start" } th { "min" } th { "max" } th { "description" } }
-            @for variable in rows {
+            @for variable in variables(document, causality) {
                 @let value = variable.first_element_child().unwrap_or(variable);
                 @let enumeration = value.has_tag_name("Enumeration");
                 tr {
