@@ -9,9 +9,6 @@ use std::process::Command;
 use crate::commands::{command, output, python, root, run, write};
 use anyhow::{Context, Result, bail};
 
-/// Oldest Python for which the pinned packages exist.
-const OLDEST: (u32, u32) = (3, 11);
-
 /// Runs the Python tests in folders or files, with the component.
 pub fn test(tests: &[&str], component: &Path) -> Result<()> {
     run(python()
@@ -94,32 +91,18 @@ pub fn zig() -> Result<(PathBuf, PathBuf)> {
 
 /// The Python 3 of this machine, if it can create environments.
 fn system_python() -> Result<&'static str> {
-    let version = |name: &str| {
-        let code = "import sys; print(*sys.version_info[:2])";
-        output(Command::new(name).args(["-c", code])).ok()
-    };
-    let found = ["python3", "python"]
-        .into_iter()
-        .find_map(|name| Some((name, version(name)?)));
-    let Some((name, version)) = found else {
-        bail!(
-            "Python 3 is missing: install Python 3.11 or newer so that python3 is found (on Debian: apt-get install \
-             python3 python3-venv)"
-        );
-    };
-    let numbers: Vec<u32> = version
-        .split_whitespace()
-        .filter_map(|number| number.parse().ok())
-        .collect();
-    if numbers.as_slice() < [OLDEST.0, OLDEST.1].as_slice() {
-        let found = version.trim().replace(' ', ".");
-        bail!(
-            "Python {found} is too old: {}.{} or newer is needed",
-            OLDEST.0,
-            OLDEST.1
-        );
+    let runs = |name: &str, code: &str| output(Command::new(name).args(["-c", code])).is_ok();
+    let name = ["python3", "python"].into_iter().find(|name| runs(name, ""));
+    let name = name.context(
+        "Python 3 is missing: install Python 3.11 or newer so that python3 is found (on Debian: apt-get install python3 \
+         python3-venv)",
+    )?;
+    // The oldest for which the pinned packages exist.
+    if !runs(name, "import sys; assert sys.version_info >= (3, 11)") {
+        let found = output(Command::new(name).arg("--version"))?;
+        bail!("{} is too old: 3.11 or newer is needed", found.trim());
     }
-    if output(command(name).args(["-c", "import venv, ensurepip"])).is_err() {
+    if !runs(name, "import venv, ensurepip") {
         bail!("Python's venv module is missing: install it (on Debian: apt-get install python3-venv)");
     }
     Ok(name)

@@ -6,7 +6,7 @@ pub mod platform;
 pub mod tools;
 pub mod trial;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use crate::commands::write;
@@ -36,11 +36,10 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let asked = |platform: &&Platform| {
         arguments.platforms.is_empty() || arguments.platforms.iter().any(|name| name == platform.folder)
     };
-    let mut release = Release {
+    let release = Release {
         metadata: &metadata,
         tools: &tools,
         private: check::private_folders(&metadata, &tools.rust.rustc)?,
-        built: BTreeMap::new(),
     };
     let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     for platform in PLATFORMS.iter().filter(asked) {
@@ -94,8 +93,6 @@ struct Release<'a> {
     tools: &'a Tools,
     /// Folders of this machine whose paths no library may contain.
     private: Vec<PathBuf>,
-    /// Libraries by what rustc calls their platforms.
-    built: BTreeMap<&'static str, Vec<u8>>,
 }
 
 impl Release<'_> {
@@ -121,15 +118,10 @@ impl Release<'_> {
     }
 
     /// The library of a platform, checked, and what its trial showed.
-    fn platform(&mut self, platform: &Platform) -> Result<(Vec<u8>, String)> {
-        let mut parts = Vec::new();
-        for target in platform.targets {
-            if !self.built.contains_key(target) {
-                let library = build::library(target, self.tools, self.metadata)?;
-                self.built.insert(target, library);
-            }
-            parts.extend(self.built.get(target).cloned());
-        }
+    fn platform(&self, platform: &Platform) -> Result<(Vec<u8>, String)> {
+        let parts = platform.targets.iter();
+        let parts = parts.map(|target| build::library(target, self.tools, self.metadata));
+        let parts = parts.collect::<Result<Vec<_>>>()?;
         let library = match parts.as_slice() {
             [one] => one.clone(),
             several => check::join(several)?,
