@@ -34,37 +34,18 @@ impl Variant {
         };
         if let Some(path) = spring {
             let (file, text) = read(path)?;
-            let declaration = declaration("beam.file", description)?;
             variant.name = format!("{name}-{}", file.trim_end_matches(".toml"));
-            for (given, carrying) in [
-                (
-                    format!("modelName=\"{name}\""),
-                    format!("modelName=\"{}\"", variant.name),
-                ),
-                (guid.to_owned(), guid_carrying(guid, &file, &text)),
-                (
-                    declaration.to_owned(),
-                    declaration.replace("<String start=\"\"/>", &format!("<String start=\"{file}\"/>")),
-                ),
-            ] {
-                ensure!(
-                    variant.description.matches(&given).count() == 1,
-                    "not once in the description: {given}"
-                );
-                variant.description = variant.description.replace(&given, &carrying);
-            }
+            let own = format!("<String start=\"{file}\"/>");
+            let parts = description.split_once("name=\"beam.file\"");
+            let (before, after) = parts.context("beam.file: not declared")?;
+            variant.description = [before, &after.replacen("<String start=\"\"/>", &own, 1)]
+                .join("name=\"beam.file\"")
+                .replacen(&format!("\"{name}\""), &format!("\"{}\"", variant.name), 1)
+                .replacen(guid, &guid_carrying(guid, &file, &text), 1);
             variant.spring = Some((file, text));
         }
         Ok(variant)
     }
-}
-
-/// The declaration of a variable in a description.
-fn declaration<'a>(name: &str, description: &'a str) -> Result<&'a str> {
-    let mut declarations = description.split_inclusive("</ScalarVariable>");
-    let found = declarations.find(|declaration| declaration.contains(&format!("name=\"{name}\"")));
-    let found = found.with_context(|| format!("{name}: not declared"))?;
-    Ok(found.split_once("<ScalarVariable ").map_or(found, |(_, own)| own))
 }
 
 /// Name and text of a spring file, checked.
@@ -84,6 +65,7 @@ fn read(path: &Path) -> Result<(String, String)> {
 #[cfg(test)]
 mod tests {
     use crate::commands::root;
+    use roxmltree::Document;
 
     use super::*;
 
@@ -95,11 +77,14 @@ mod tests {
             let text = std::fs::read_to_string(path)?;
             let guid = guid_carrying(own, "tapered-cube.toml", &text);
             assert!(variant.name.ends_with("-tapered-cube") && guid != own);
-            let name = format!("modelName=\"{}\" guid=\"{guid}\"", variant.name);
-            for part in [&name, "<String start=\"tapered-cube.toml\"/>"] {
-                assert_eq!(variant.description.matches(part).count(), 1, "{part}");
-            }
-            assert!(declaration("beam.file", &variant.description)?.contains("tapered-cube.toml"));
+            let model = format!("modelName=\"{}\" guid=\"{guid}\"", variant.name);
+            assert_eq!(variant.description.matches(&model).count(), 1, "{model}");
+            let document = Document::parse(&variant.description)?;
+            let mut carrying = document
+                .descendants()
+                .filter(|node| node.attribute("start") == Some("tapered-cube.toml"));
+            let declared = carrying.next().and_then(|value| value.parent()?.attribute("name"));
+            assert_eq!((declared, carrying.next()), (Some("beam.file"), None));
         }
         for wrong in ["a&b.toml", "none.toml", "\u{e4}.toml"] {
             assert!(Variant::new(false, Some(Path::new(wrong))).is_err(), "{wrong}");
