@@ -53,11 +53,11 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
             versions.insert(format!("{} without a version", name(symbol.st_name)));
         }
     }
+    let allowed = |version: &&String| glibc(version).is_some_and(|numbers| numbers.as_slice() <= GLIBC.as_slice());
     let too_new: Vec<_> = versions.iter().filter(|version| !allowed(version)).collect();
-    let newest = versions.iter().filter_map(|version| glibc(version)).max();
+    let newest = versions.iter().max_by_key(|version| glibc(version));
     let found = match (too_new.as_slice(), newest) {
-        ([], None) => "none".to_owned(),
-        ([], Some([major, minor, _])) => format!("up to GLIBC_{major}.{minor}"),
+        ([], Some(newest)) => format!("up to {newest}"),
         _ => super::report::listed(&too_new),
     };
     let [major, minor] = GLIBC;
@@ -70,19 +70,8 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-fn allowed(version: &str) -> bool {
-    glibc(version).is_some_and(|[major, minor, _]| [major, minor] <= GLIBC)
-}
-
 /// The numbers of a version such as `GLIBC_2.2.5`.
-fn glibc(version: &str) -> Option<[u32; 3]> {
-    let mut numbers = [0; 3];
-    let parts: Vec<_> = version.strip_prefix("GLIBC_")?.split('.').collect();
-    if parts.len() > numbers.len() {
-        return None;
-    }
-    for (number, part) in numbers.iter_mut().zip(parts) {
-        *number = part.parse().ok()?;
-    }
-    Some(numbers)
+fn glibc(version: &str) -> Option<Vec<u32>> {
+    let numbers = version.strip_prefix("GLIBC_")?.split('.');
+    numbers.map(|number| number.parse().ok()).collect()
 }

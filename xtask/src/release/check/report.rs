@@ -45,13 +45,12 @@ impl Report {
         let declared = declared();
         let stray: Vec<_> = exported.difference(&declared).collect();
         let missing: Vec<_> = declared.difference(exported).collect();
-        let some = |what, names: &[&String]| match names {
-            [] => String::new(),
-            [name] => format!(", {what} {name}"),
-            [first, others @ ..] => format!(", {what} {first} and {} more", others.len()),
-        };
-        let [strays, gaps] = [some("not declared", &stray), some("missing", &missing)];
-        let found = format!("{} symbols{strays}{gaps}", exported.len());
+        let count = exported.len();
+        let found = format!(
+            "{count} symbols, not declared: {}, missing: {}",
+            listed(&stray),
+            listed(&missing)
+        );
         let allowed = format!("the {} functions of the C header", declared.len());
         self.add("exported symbols", found, allowed, *exported == declared);
     }
