@@ -31,6 +31,11 @@ pub fn page(variant: &Variant) -> Result<String> {
     let name = attribute(model, "modelName");
     let version = attribute(model, "version");
     let sections = SECTIONS.map(|title| section(&readme, title).map(|text| (title, markdown(text))));
+    let mut enumerations: Vec<_> = document
+        .descendants()
+        .filter(|node| node.has_tag_name("Enumeration"))
+        .collect();
+    enumerations.retain(Node::has_children);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -54,9 +59,9 @@ pub fn page(variant: &Variant) -> Result<String> {
                     h2 { (title) }
                     (scroll(title, &table(&document, causality)))
                 }
-                @if let Some(choices) = choices(&document) {
+                @if !enumerations.is_empty() {
                     h2 { "Choices" }
-                    (scroll("Choices", &choices))
+                    (scroll("Choices", &choices(&enumerations)))
                 }
                 @for section in sections {
                     @let (title, text) = section?;
@@ -134,17 +139,12 @@ fn table(document: &Document, causality: &str) -> Markup {
     }
 }
 
-/// The choices of enumerations, if there are any.
-fn choices(document: &Document) -> Option<Markup> {
-    let mut types = document
-        .descendants()
-        .filter(|node| node.has_tag_name("Enumeration") && node.has_children())
-        .peekable();
-    types.peek()?;
-    Some(html! {
+/// The choices of enumerations.
+fn choices(enumerations: &[Node]) -> Markup {
+    html! {
         table {
             tr { th { "type" } th { "choice" } th { "value" } th { "description" } }
-            @for list in types {
+            @for list in enumerations {
                 @let name = list.parent().map_or("", |definition| attribute(definition, "name"));
                 @for item in list.children().filter(Node::is_element) {
                     tr {
@@ -156,7 +156,7 @@ fn choices(document: &Document) -> Option<Markup> {
                 }
             }
         }
-    })
+    }
 }
 
 /// The README's first paragraph.
