@@ -73,6 +73,11 @@ pub fn output(command: &mut Command) -> Result<String> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
+/// Whether a program is installed.
+pub fn is_there(program: &str) -> bool {
+    output(command(program).arg("--version")).is_ok()
+}
+
 /// The folder of a Rust compiler, which has its libraries and documentation.
 pub fn sysroot(rustc: impl AsRef<std::ffi::OsStr>) -> Result<PathBuf> {
     let sysroot = output(command(rustc).args(["--print", "sysroot"]))?;

@@ -42,7 +42,7 @@ fn scene(path: &Path) -> Result<String> {
     let file = SceneFile::read(path)?;
     let names: Vec<_> = file.outputs.iter().map(|output| output.name).collect();
     let mut table = format!("time,{}\n", names.join(","));
-    let mut row = |simulation: &Simulation, time: f64| {
+    run(&file, |simulation, time| {
         write!(table, "{time}")?;
         for output in &file.outputs {
             let value = simulation.output(output).context("not an output")?;
@@ -50,15 +50,20 @@ fn scene(path: &Path) -> Result<String> {
             write!(table, ",{value}")?;
         }
         table.push('\n');
-        Ok::<_, anyhow::Error>(())
-    };
+        Ok(())
+    })?;
+    Ok(table)
+}
+
+/// Runs a scene file, and does something at each of its communication points.
+pub fn run(file: &SceneFile, mut each: impl FnMut(&Simulation, f64) -> Result<()>) -> Result<()> {
     let mut simulation = Simulation::new(&file.scene, &file.inputs_over(0.0, file.communication_step)?, 0.0)?;
-    row(&simulation, 0.0)?;
+    each(&simulation, 0.0)?;
     for (time, size) in file.steps() {
         simulation.step(&file.inputs_over(time, size)?, time, size)?;
-        row(&simulation, time + size)?;
+        each(&simulation, time + size)?;
     }
-    Ok(table)
+    Ok(())
 }
 
 /// For each communication step the acceleration over it, and the contact forces of both runs at its start.

@@ -6,14 +6,11 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use crate::commands::{cargo, command, output, run as run_command};
+use crate::commands::{cargo, is_there, run as run_command};
 use crate::{fmu, importers, python};
 
 /// The message where Chromium is missing.
 pub const CHROMIUM_MISSING: &str = "Chromium is missing (on Debian: apt-get install chromium)";
-
-/// Names of Chromium.
-const CHROMIUM: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
 /// Arguments passed on.
 #[derive(clap::Args)]
@@ -72,8 +69,9 @@ pub fn test(component: &Path) -> Result<()> {
     python::test(&["report"], component)
 }
 
-/// The command name of Chromium, if installed.
-pub fn chromium() -> Option<&'static str> {
-    let there = |name: &&str| output(command(name).arg("--version")).is_ok();
-    CHROMIUM.into_iter().find(there)
+/// Whether Chromium is installed, by one of its names.
+pub fn has_chromium() -> bool {
+    ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"]
+        .into_iter()
+        .any(is_there)
 }

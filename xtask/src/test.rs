@@ -3,7 +3,7 @@
 use std::process::Command;
 use std::{env, thread};
 
-use crate::commands::{cargo, output, run as run_command};
+use crate::commands::{cargo, is_there, output, run as run_command};
 use anyhow::{Result, anyhow, bail};
 
 use crate::stage::stage;
@@ -50,8 +50,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
             output(Command::new(env::current_exe()?).args(["test", "--component"]))
         })?;
         // Of what both have left.
-        let chromium = report::chromium().is_some();
-        if_installed("report", chromium, report::CHROMIUM_MISSING, || {
+        if_installed("report", report::has_chromium(), report::CHROMIUM_MISSING, || {
             report::test(&fmu::path())
         })
     })
@@ -91,7 +90,7 @@ fn library() -> Result<()> {
         run_command(lint.arg("--features=conformance/types").args(LINT))
     })?;
     rust()?;
-    if_installed("valgrind", valgrind::is_installed(), valgrind::MISSING, valgrind::run)
+    if_installed("valgrind", is_there("valgrind"), valgrind::MISSING, valgrind::run)
 }
 
 /// A stage with a program that a machine may lack.

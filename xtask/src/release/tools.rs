@@ -4,7 +4,7 @@ use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use crate::commands::{command, output, read, sysroot};
-use anyhow::{Result, bail};
+use anyhow::{Context, Result};
 
 use crate::package::Files;
 use crate::python;
@@ -20,13 +20,11 @@ pub struct Rust {
 impl Rust {
     /// Finds it.
     pub fn find() -> Result<Self> {
-        let Some(rust) = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources) else {
-            bail!(
-                "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
-                 rustc-web rust-web-src)"
-            );
-        };
-        Ok(rust)
+        let rust = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources);
+        rust.context(
+            "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
+             rustc-web rust-web-src)",
+        )
     }
 
     /// Flags that remove its folders from what it compiles.
@@ -88,8 +86,5 @@ pub fn lld(rustc: &Path) -> Result<PathBuf> {
         let lld = Path::new(libraries.trim()).parent()?.join("bin").join(name);
         lld.exists().then_some(lld)
     });
-    let Some(lld) = found else {
-        bail!("rust-lld is missing, which links for macOS and WebAssembly: it comes with the toolchains of rustup");
-    };
-    Ok(lld)
+    found.context("rust-lld is missing, which links for macOS and WebAssembly: it comes with the toolchains of rustup")
 }

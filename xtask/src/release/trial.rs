@@ -10,14 +10,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::commands::{command, output, root};
+use crate::commands::{command, is_there, output, root};
 use anyhow::{Context, Result, bail};
 use relay_contact::C_HEADER;
 use relay_contact::scene::file::SceneFile;
-use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 
 use super::platform::Platform;
+use crate::reference;
 
 /// The scene that `paper_scene.c` runs.
 const SCENE: &str = "scenes/paper-1khz.toml";
@@ -53,7 +53,14 @@ pub fn run(platform: &Platform, library: &Path, zig: &Path) -> Result<String> {
 /// How close forces of the published run are to those in Rust on this machine; an error where one differs by more than the
 /// scene's tolerance allows.
 fn compare(forces: &[f64]) -> Result<String> {
-    let (expected, allowed) = expected()?;
+    let file = SceneFile::read(&root().join(SCENE))?;
+    let mut expected = Vec::new();
+    reference::run(&file, |simulation, time| {
+        expected.push((time, simulation.real(RealOutput::ContactForce)));
+        Ok(())
+    })?;
+    let (_, preload) = expected.first().context("no forces")?;
+    let allowed = file.scene.solver.effective_tolerance() * preload;
     let count = forces.len();
     if count != expected.len() {
         bail!("{count} forces instead of {}", expected.len());
@@ -71,21 +78,6 @@ fn compare(forces: &[f64]) -> Result<String> {
     } else {
         format!("{count} forces, largest difference {largest:.1e} N, allowed {allowed:.1e} N")
     })
-}
-
-/// Contact forces of the published run in Rust on this machine, each with its time, and the difference allowed: the
-/// tolerance of the force in the preload.
-fn expected() -> Result<(Vec<(f64, f64)>, f64)> {
-    let file = SceneFile::read(&root().join(SCENE))?;
-    let inputs = file.inputs_over(0.0, file.communication_step)?;
-    let mut simulation = Simulation::new(&file.scene, &inputs, 0.0)?;
-    let preload = simulation.real(RealOutput::ContactForce);
-    let mut forces = vec![(0.0, preload)];
-    for (time, size) in file.steps() {
-        simulation.step(&file.inputs_over(time, size)?, time, size)?;
-        forces.push((time + size, simulation.real(RealOutput::ContactForce)));
-    }
-    Ok((forces, file.scene.solver.effective_tolerance() * preload))
 }
 
 /// How programs are compiled and started: a C compiler, and the words before a program.
@@ -132,10 +124,6 @@ pub fn is_host(platform: &Platform) -> bool {
     let system = if OS == "macos" { "darwin" } else { OS };
     let mut targets = platform.targets.iter();
     targets.any(|target| target.starts_with(ARCH) && target.contains(system))
-}
-
-fn is_there(program: &str) -> bool {
-    output(command(program).arg("--version")).is_ok()
 }
 
 fn needed(program: &str, packages: &str) -> Result<(), String> {
