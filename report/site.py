@@ -66,8 +66,9 @@ def on_files(files: Any, config: Any) -> Any:  # noqa: ANN401
     """Add the pages and all they link to, in the paths that they have in the project."""
     from mkdocs.structure.files import File
 
-    linked = {ROOT / path for page in PAGES for path, _ in links(page)} | {ROOT / page for page in PAGES}
-    for path in sorted(file for each in linked for file in (each.rglob("*") if each.is_dir() else [each])):
+    linked = {path for page in PAGES for path, _ in links(page)}
+    own = {ROOT / path for path in {*PAGES, *linked, *config.extra["polyfills"]}}
+    for path in sorted(file for each in own for file in (each.rglob("*") if each.is_dir() else [each])):
         if path.is_file():
             files.append(File.generated(config, path.relative_to(ROOT).as_posix(), abs_src_path=str(path)))
     files.append(File.generated(config, "python.md", content=PYTHON))

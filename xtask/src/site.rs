@@ -9,13 +9,7 @@ use crate::{explore, python};
 
 /// Builds the site in `out/site/html`; a dead link is an error.
 pub fn run() -> Result<()> {
-    let page = read(explore::page()?)?;
-    write("out/site/source/explore.html", &page)?;
-    let search = "iframe-worker.js";
-    write(
-        format!("out/site/source/{search}"),
-        &read(format!("explore/page/{search}"))?,
-    )?;
+    write("out/site/source/explore.html", &read(explore::page()?)?)?;
     python::install("docs")?;
     let mut build = crate::commands::python();
     build.args(["-m", "mkdocs", "build", "--strict", "--quiet"]);
