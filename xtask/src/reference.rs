@@ -66,73 +66,46 @@ pub fn run(file: &SceneFile, mut each: impl FnMut(&Simulation, f64) -> Result<()
     Ok(())
 }
 
-/// For each communication step the acceleration over it, and the contact forces of both runs at its start.
+/// For each communication step the acceleration over it, and the contact forces, N, of two runs at its start: of one contact,
+/// its frame's acceleration a sine held from each communication point to the next; and of the second of the two contacts of
+/// `SystemStructure.ssd`.
 ///
 /// Importers reckon time differently: `n h`, a sum of steps, whole nanoseconds. That makes no difference to the first run:
 /// a length of step that differs from the last by the rounding of time counts as the same.
 fn reference() -> Result<String> {
     let mut table = "time,base.acceleration,run,coupled\n".to_owned();
-    let (single, coupled) = (single()?, coupled()?);
-    // It opens, closes again, and the second contact vibrates about twice the preload.
-    let opened = single
-        .iter()
-        .position(|force| *force == 0.0)
-        .context("it never opens")?;
-    ensure!(
-        single.iter().skip(opened).any(|force| *force > 0.152),
-        "it never closes again"
-    );
-    for (n, (single, coupled)) in (0..=STEPS).zip(single.iter().zip(coupled)) {
-        writeln!(table, "{},{},{single},{coupled}", time(n), acceleration(n))?;
+    let mut held = Inputs::default();
+    let jump = Inputs {
+        base_acceleration: JUMP,
+        ..held
+    };
+    let carried = |first: &Simulation| Inputs {
+        support_displacement: first.real(RealOutput::TipDisplacement),
+        ..jump
+    };
+    let (mut single, mut first) = (start(&held)?, start(&jump)?);
+    let mut second = start(&carried(&first))?;
+    let mut forces = Vec::new();
+    for n in 0..=STEPS {
+        let time = f64::from(n) * STEP;
+        held.base_acceleration = SINE.0 * (TAU * SINE.1 * time).sin();
+        let [force, coupled] = [&single, &second].map(|contact| contact.real(RealOutput::ContactForce));
+        writeln!(table, "{time},{},{force},{coupled}", held.base_acceleration)?;
+        forces.push(force);
+        single.step(&held, time, STEP)?;
+        // Both step from the same communication point; what the first reached there is what the second gets.
+        second.step(&carried(&first), time, STEP)?;
+        first.step(&jump, time, STEP)?;
     }
+    // It opens, closes again, and the second contact vibrates about twice the preload.
+    let opened = forces.iter().position(|force| *force == 0.0);
+    let mut after = forces.iter().skip(opened.context("it never opens")?);
+    ensure!(after.any(|force| *force > 0.152), "it never closes again");
     Ok(table)
-}
-
-fn time(n: u32) -> f64 {
-    f64::from(n) * STEP
-}
-
-fn acceleration(n: u32) -> f64 {
-    SINE.0 * (TAU * SINE.1 * time(n)).sin()
 }
 
 fn start(inputs: &Inputs) -> Result<Simulation> {
     let mut scene = Scene::default();
     scene.solver.tolerance = TOLERANCE;
     Ok(Simulation::new(&scene, inputs, 0.0)?)
-}
-
-/// Contact forces, N, of one contact, its frame's acceleration a sine held from each communication point to the next.
-fn single() -> Result<Vec<f64>> {
-    let mut inputs = Inputs::default();
-    let mut contact = start(&inputs)?;
-    let mut forces = vec![contact.real(RealOutput::ContactForce)];
-    for n in 0..STEPS {
-        inputs.base_acceleration = acceleration(n);
-        contact.step(&inputs, time(n), STEP)?;
-        forces.push(contact.real(RealOutput::ContactForce));
-    }
-    Ok(forces)
-}
-
-/// Contact forces, N, of the second of the two contacts of `SystemStructure.ssd`. Both step from the same communication
-/// point; what the first reached there is what the second gets.
-fn coupled() -> Result<Vec<f64>> {
-    let jump = Inputs {
-        base_acceleration: JUMP,
-        ..Inputs::default()
-    };
-    let mut first = start(&jump)?;
-    let carried = |first: &Simulation| Inputs {
-        support_displacement: first.real(RealOutput::TipDisplacement),
-        ..jump
-    };
-    let mut second = start(&carried(&first))?;
-    let mut forces = vec![second.real(RealOutput::ContactForce)];
-    for n in 0..STEPS {
-        second.step(&carried(&first), time(n), STEP)?;
-        first.step(&jump, time(n), STEP)?;
-        forces.push(second.real(RealOutput::ContactForce));
-    }
-    Ok(forces)
 }
