@@ -1,7 +1,8 @@
-//! Running other programs in the project's folder, and its files.
+//! Running other programs in the project's folder, its files, and stages of work.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 use std::{env, fs};
 
 use anyhow::{Context, Result, bail};
@@ -76,6 +77,15 @@ pub fn output(command: &mut Command) -> Result<String> {
 /// Whether a program is installed.
 pub fn is_there(program: &str) -> bool {
     output(command(program).arg("--version")).is_ok()
+}
+
+/// Does the work of a stage and prints its duration.
+pub fn stage<T>(name: &str, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    println!("== {name}");
+    let start = Instant::now();
+    let result = work()?;
+    println!("== {name}: passed in {:.1} s", start.elapsed().as_secs_f64());
+    Ok(result)
 }
 
 /// The folder of a Rust compiler, which has its libraries and documentation.

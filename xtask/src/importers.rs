@@ -8,11 +8,10 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::commands::{cargo, command, output, read, root, run as run_command, write};
+use crate::commands::{cargo, command, output, read, root, run as run_command, stage, write};
 use anyhow::{Context, Result};
 
 use crate::package::{Files, pack};
-use crate::stage::stage;
 use crate::variant::Variant;
 use crate::{fmu, python, reference};
 

@@ -14,7 +14,6 @@ mod reference;
 mod release;
 mod report;
 mod site;
-mod stage;
 mod test;
 mod valgrind;
 mod variant;

@@ -3,23 +3,10 @@
 use std::process::Command;
 use std::{env, thread};
 
-use crate::commands::{cargo, is_there, output, run as run_command};
+use crate::commands::{cargo, is_there, output, run as run_command, stage};
 use anyhow::{Result, anyhow, bail};
 
-use crate::stage::stage;
 use crate::{fmu, importers, python, report, valgrind, wheel};
-
-/// Folders and files with Python in them.
-const PYTHON: [&str; 8] = [
-    "conftest.py",
-    "python",
-    "examples/python",
-    "tests/python",
-    "conformance/python",
-    "docs/model.py",
-    "report",
-    "explore",
-];
 
 /// Arguments of cargo's lint after the packages.
 const LINT: [&str; 4] = ["--all-targets", "--", "-D", "warnings"];
@@ -106,7 +93,7 @@ fn if_installed(name: &str, installed: bool, missing: &str, run: impl FnOnce() -
 fn component() -> Result<()> {
     stage("Python environment", python::prepare)?;
     let component = stage("component", fmu::build)?;
-    let tool = |arguments: &[&str]| run_command(crate::commands::python().arg("-m").args(arguments).args(PYTHON));
+    let tool = |arguments: &[&str]| run_command(crate::commands::python().arg("-m").args(arguments));
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
     stage("Python types", || tool(&["mypy"]))?;
