@@ -151,13 +151,6 @@ def test_the_block_shows_every_input_and_output_apart(documentation: Page) -> No
         assert apart, (one, other)
 
 
-def test_links_of_the_documentation_lead_to_files(documentation: Page) -> None:
-    links = documentation.eval_on_selector_all("a[href]", "links => links.map(link => link.href)")
-    files = [link.removeprefix("file://").partition("#")[0] for link in links if link.startswith("file:")]
-    assert files
-    assert [file for file in files if not Path(file).exists()] == []
-
-
 def test_a_comparison_without_a_peer_is_not_written(monkeypatch: pytest.MonkeyPatch) -> None:
     page = (DOCS / "accuracy.md").read_text(encoding="utf-8")
     measured = pd.DataFrame({"integrator": ["CVODE BDF"], "outcome": ["skipped: it needs SUNDIALS"]})
