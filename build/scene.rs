@@ -70,7 +70,6 @@ pub fn doc(document: &Document, variable: Node, value: Node) -> Result<String, B
 /// The code of the structs and of the access to their fields.
 pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
     let mut groups: BTreeMap<&str, Fields> = BTreeMap::new();
-    let mut inner: BTreeMap<(&str, &str), Fields> = BTreeMap::new();
     let mut arms: BTreeMap<&str, Arms> = BTreeMap::new();
     let mut choices = String::new();
     for variable in list.children().filter(Node::is_element) {
@@ -81,20 +80,10 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
         }
         let (rust, start) = start(document, value)?;
         let doc = doc(document, variable, value)?;
-        let parts: Vec<_> = name.split('.').collect();
-        let path = match parts[..] {
-            [group, field] => {
-                let field = field.to_snake_case();
-                groups.entry(group).or_default().add(&doc, &field, &rust, &start)?;
-                format!("{group}.{field}")
-            }
-            [group, of, field] => {
-                let field = field.to_snake_case();
-                inner.entry((group, of)).or_default().add(&doc, &field, &rust, &start)?;
-                format!("{group}.{of}.{field}")
-            }
-            _ => return Err(format!("{name}: build/scene.rs knows groups within groups only").into()),
-        };
+        let (group, field) = name.rsplit_once('.').ok_or(format!("{name} is in no group"))?;
+        let field = field.to_snake_case();
+        groups.entry(group).or_default().add(&doc, &field, &rust, &start)?;
+        let path = format!("{group}.{field}");
         let variant = name.to_upper_camel_case();
         let Arms { read, write } = arms.entry(kind).or_default();
         if kind == "Enumeration" {
@@ -112,7 +101,7 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
             writeln!(write, "            {kind}Parameter::{variant} => &mut self.{path},")?;
         }
     }
-    let mut code = structs(groups, &inner)?;
+    let mut code = structs(groups)?;
     access(&mut code, &arms)?;
     writeln!(
         code,
@@ -123,20 +112,20 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
 }
 
 /// The structs with their start values.
-fn structs(
-    mut groups: BTreeMap<&str, Fields>,
-    inner: &BTreeMap<(&str, &str), Fields>,
-) -> Result<String, Box<dyn Error>> {
+fn structs(mut groups: BTreeMap<&str, Fields>) -> Result<String, Box<dyn Error>> {
     const DERIVE: &str = "#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]\n";
     let (kind, doc) = INNER;
     let (mut code, mut fields, mut all) = (String::new(), String::new(), String::new());
+    let mut inner = None;
     for (group, doc) in GROUPS {
         let mut own = groups.remove(group).ok_or(format!("no parameters {group}"))?;
-        for ((outer, of), inside) in inner {
-            if *outer == group {
-                let start = format!("{kind} {{ {} }}", inside.starts);
-                own.add(&format!("`{group}.{of}`"), of, kind, &start)?;
-            }
+        let prefix = format!("{group}.");
+        let (inside, others): (BTreeMap<_, _>, _) = groups.into_iter().partition(|(name, _)| name.starts_with(&prefix));
+        groups = others;
+        for (name, fields) in inside {
+            let start = format!("{kind} {{ {} }}", fields.starts);
+            own.add(&format!("`{name}`"), name.trim_start_matches(&prefix), kind, &start)?;
+            inner.get_or_insert(fields.code);
         }
         let name = group.to_upper_camel_case();
         writeln!(code, "/// {doc}\n{DERIVE}pub struct {name} {{\n{}}}", own.code)?;
@@ -146,9 +135,8 @@ fn structs(
     if let Some(group) = groups.keys().next() {
         return Err(format!("build/scene.rs says nothing of the parameters {group}").into());
     }
-    if let Some(first) = inner.values().next() {
-        writeln!(code, "/// {doc}\n{DERIVE}pub struct {kind} {{\n{}}}", first.code)?;
-    }
+    let inner = inner.ok_or(format!("no group is a {kind}"))?;
+    writeln!(code, "/// {doc}\n{DERIVE}pub struct {kind} {{\n{inner}}}")?;
     writeln!(
         code,
         "/// Parameters and effects of a simulation. SI units.\n#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]\n\
