@@ -65,38 +65,27 @@ type Instantiate<Callbacks> = Option<
 const _: Instantiate<ours::fmi2CallbackFunctions> = Some(ours::fmi2Instantiate);
 const _: fn(official::fmi2InstantiateTYPE) -> Instantiate<official::fmi2CallbackFunctions> = |function| function;
 
-/// The callbacks have the same members of the same types ...
-const _: fn(official::fmi2CallbackFunctions) -> ours::fmi2CallbackFunctions = |callbacks| {
-    let official::fmi2CallbackFunctions {
-        logger,
-        allocateMemory,
-        freeMemory,
-        stepFinished,
-        componentEnvironment,
-    } = callbacks;
-    ours::fmi2CallbackFunctions {
-        logger,
-        allocateMemory,
-        freeMemory,
-        stepFinished,
-        componentEnvironment,
-    }
-};
-
-/// ... in the same places.
-macro_rules! same_place {
-    ($($member:ident,)*) => { $(
-        assert!(
-            std::mem::offset_of!(ours::fmi2CallbackFunctions, $member)
-                == std::mem::offset_of!(official::fmi2CallbackFunctions, $member)
-        );
-    )* };
+/// The callbacks have the same members of the same types in the same places.
+macro_rules! same_members {
+    ($($member:ident),*) => {
+        const _: fn(official::fmi2CallbackFunctions) -> ours::fmi2CallbackFunctions = |callbacks| {
+            let official::fmi2CallbackFunctions { $($member),* } = callbacks;
+            ours::fmi2CallbackFunctions { $($member),* }
+        };
+        const _: () = { $(
+            assert!(
+                std::mem::offset_of!(ours::fmi2CallbackFunctions, $member)
+                    == std::mem::offset_of!(official::fmi2CallbackFunctions, $member)
+            );
+        )* };
+    };
 }
+
+same_members!(logger, allocateMemory, freeMemory, stepFinished, componentEnvironment);
 
 const _: () = {
     assert!(size_of::<ours::fmi2CallbackFunctions>() == size_of::<official::fmi2CallbackFunctions>());
     assert!(align_of::<ours::fmi2CallbackFunctions>() == align_of::<official::fmi2CallbackFunctions>());
-    same_place! { logger, allocateMemory, freeMemory, stepFinished, componentEnvironment, }
 };
 
 /// The values of the enumerations are the same.
