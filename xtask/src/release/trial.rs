@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::commands::{command, is_there, output, root};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use relay_contact::C_HEADER;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::RealOutput;
@@ -88,33 +88,32 @@ pub struct Runner {
 
 impl Runner {
     /// For the platform; otherwise the reason why there is none, and what to install.
-    fn of(platform: &Platform, zig: &Path) -> Result<Self, String> {
+    fn of(platform: &Platform, zig: &Path) -> Result<Self> {
         let by_zig = |target: &str, start: &[&str]| Self {
             compiler: vec![zig.into(), "cc".into(), "-target".into(), target.into()],
             start: start.iter().map(Into::into).collect(),
         };
         match platform.folder {
             _ if is_host(platform) => {
-                needed("cc", "gcc libc6-dev")?;
+                ensure!(is_there("cc"), missing("cc", "gcc libc6-dev"));
                 Ok(Self {
                     compiler: vec!["cc".into()],
                     start: Vec::new(),
                 })
             }
             "aarch64-linux" => {
-                needed("qemu-aarch64", "qemu-user")?;
-                if !Path::new(ARM).join("lib/libc.so.6").exists() {
-                    return Err(missing("the C library of Arm", "libc6-arm64-cross"));
-                }
+                ensure!(is_there("qemu-aarch64"), missing("qemu-aarch64", "qemu-user"));
+                let there = Path::new(ARM).join("lib/libc.so.6").exists();
+                ensure!(there, missing("the C library of Arm", "libc6-arm64-cross"));
                 Ok(by_zig("aarch64-linux-gnu.2.17", &["qemu-aarch64", "-L", ARM]))
             }
             "win64" => {
                 let wine = WINE.into_iter().find(|wine| is_there(wine));
-                let wine = wine.ok_or_else(|| missing("Wine", "wine64"))?;
+                let wine = wine.with_context(|| missing("Wine", "wine64"))?;
                 Ok(by_zig("x86_64-windows-gnu", &[wine]))
             }
-            "linux64" => Err("it runs only on 64-bit x86 Linux".to_owned()),
-            _ => Err("it runs only on macOS".to_owned()),
+            "linux64" => bail!("it runs only on 64-bit x86 Linux"),
+            _ => bail!("it runs only on macOS"),
         }
     }
 }
@@ -124,12 +123,6 @@ pub fn is_host(platform: &Platform) -> bool {
     let system = if OS == "macos" { "darwin" } else { OS };
     let mut targets = platform.targets.iter();
     targets.any(|target| target.starts_with(ARCH) && target.contains(system))
-}
-
-fn needed(program: &str, packages: &str) -> Result<(), String> {
-    is_there(program)
-        .then_some(())
-        .ok_or_else(|| missing(program, packages))
 }
 
 fn missing(what: &str, packages: &str) -> String {
