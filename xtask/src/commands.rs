@@ -21,8 +21,13 @@ pub fn read(path: impl AsRef<Path>) -> Result<Vec<u8>> {
     fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
 }
 
+/// The same of a text.
+pub fn text(path: impl AsRef<Path>) -> Result<String> {
+    String::from_utf8(read(&path)?).with_context(|| path.as_ref().display().to_string())
+}
+
 /// Writes a file of the project, and its folder if there is none yet; gives its whole path.
-pub fn write(path: impl AsRef<Path>, contents: &[u8]) -> Result<PathBuf> {
+pub fn write(path: impl AsRef<Path>, contents: impl AsRef<[u8]>) -> Result<PathBuf> {
     let path = root().join(path);
     fs::create_dir_all(path.parent().context("a file without a folder")?)?;
     fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;

@@ -1,10 +1,10 @@
 //! The page that runs the simulation: one file, with the library in WebAssembly.
 
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::commands::{cargo, read, run, write};
-use anyhow::{Context, Result, bail};
+use crate::commands::{cargo, read, run, text, write};
+use anyhow::{Result, bail};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -40,14 +40,15 @@ pub fn page() -> Result<PathBuf> {
         .iter()
         .map(|variable| (variable.name.to_owned(), json!(variable.start)))
         .collect();
-    let mut page = text("page.html")?;
+    let part = |name: &str| text(format!("explore/page/{name}"));
+    let mut page = part("page.html")?;
     for (mark, contents) in [
-        ("/*style*/", text("style.css")?),
+        ("/*style*/", part("style.css")?),
         ("/*start values*/", serde_json::to_string(&start)?),
-        ("/*worker*/", text("worker.js")?),
-        ("/*scene*/", text("scene.js")?),
-        ("/*plot*/", text("plot.js")?),
-        ("/*page*/", text("page.js")?),
+        ("/*worker*/", part("worker.js")?),
+        ("/*scene*/", part("scene.js")?),
+        ("/*plot*/", part("plot.js")?),
+        ("/*page*/", part("page.js")?),
         ("/*version*/", env!("CARGO_PKG_VERSION").to_owned()),
         ("/*library*/", library),
     ] {
@@ -60,11 +61,6 @@ pub fn page() -> Result<PathBuf> {
         bail!("the page has {} bytes; at most {SIZE} are allowed", page.len());
     }
     write("dist/explore.html", page.as_bytes())
-}
-
-fn text(name: &str) -> Result<String> {
-    let path = Path::new("explore/page").join(name);
-    String::from_utf8(read(&path)?).with_context(|| path.display().to_string())
 }
 
 /// The library in WebAssembly.

@@ -32,7 +32,7 @@ pub fn build_variant(variant: &Variant) -> Result<PathBuf> {
     let folder = platform()?;
     let name = format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}");
     let library = read(metadata.target_directory.as_std_path().join("release").join(&name))?;
-    write("dist/include/relay_contact.h", C_HEADER.as_bytes())?;
+    write("dist/include/relay_contact.h", C_HEADER)?;
     write(format!("dist/lib/{name}"), &library)?;
     let libraries = [(folder, DLL_EXTENSION, library)];
     let files = files(variant, &metadata, libraries, Path::new("rustc"), &[], Files::new())?;
@@ -91,23 +91,19 @@ pub fn files<'a>(
     more_licences: Files,
 ) -> Result<Files> {
     let crates = linked::crates(metadata, targets)?;
-    let terminal = |name: &str| read(Path::new("docs/terminalsAndIcons").join(name));
     let mut files = licences::texts(&crates, rustc, more_licences)?;
     for (path, contents) in [
         ("modelDescription.xml", variant.description.clone().into_bytes()),
         ("model.png", read("docs/model.png")?),
         ("documentation/index.html", documentation::page(variant)?.into_bytes()),
-        (
-            "terminalsAndIcons/terminalsAndIcons.xml",
-            terminal("terminalsAndIcons.xml")?,
-        ),
-        ("terminalsAndIcons/icon.png", terminal("icon.png")?),
-        ("terminalsAndIcons/icon.svg", terminal("icon.svg")?),
-        ("terminalsAndIcons/pin.png", terminal("pin.png")?),
-        ("terminalsAndIcons/pin.svg", terminal("pin.svg")?),
         ("documentation/sbom.cdx.json", bill::text(&crates, rustc)?.into_bytes()),
     ] {
         files.insert(path.to_owned(), contents);
+    }
+    for name in ["terminalsAndIcons.xml", "icon.png", "icon.svg", "pin.png", "pin.svg"] {
+        let path = format!("terminalsAndIcons/{name}");
+        let contents = read(format!("docs/{path}"))?;
+        files.insert(path, contents);
     }
     if let Some((name, text)) = &variant.spring {
         files.insert(format!("resources/{name}"), text.clone().into_bytes());

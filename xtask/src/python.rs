@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::commands::{command, output, python, root, run, write};
+use crate::commands::{command, output, python, root, run, text, write};
 use anyhow::{Context, Result, bail};
 
 /// Runs the Python tests in folders or files, with the component.
@@ -30,7 +30,7 @@ pub fn report(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
 pub fn prepare() -> Result<()> {
     let lock = File::open(write("out/python.lock", b"")?)?;
     lock.lock()?;
-    let required = requirements()?;
+    let required = text("requirements.txt")?;
     // Written last, so that an unfinished environment is created again.
     let stamp = root().join(".venv/requirements.txt");
     let current = fs::read_to_string(&stamp).is_ok_and(|installed| installed == required);
@@ -46,10 +46,6 @@ pub fn prepare() -> Result<()> {
                 open(os.path.join(site, 'relay_contact.pth'), 'w').write(os.path.relpath('python', site))";
     output(python().args(["-c", link]))?;
     Ok(fs::write(stamp, required)?)
-}
-
-fn requirements() -> Result<String> {
-    fs::read_to_string(root().join("requirements.txt")).context("cannot read requirements.txt")
 }
 
 fn pip() -> Command {
@@ -74,7 +70,7 @@ fn package(name: &str) -> Result<PathBuf> {
 /// Adds the packages that only one task needs: marked in requirements.txt with its name, and not installed by [`prepare`].
 pub fn install(task: &str) -> Result<()> {
     prepare()?;
-    let required = requirements()?;
+    let required = text("requirements.txt")?;
     let mark = format!("; extra == '{task}'");
     println!("installing what the task {task} needs (Python packages of requirements.txt)");
     let marked = required.lines().filter_map(|line| line.strip_suffix(&mark));

@@ -25,13 +25,13 @@ const JUMP: f64 = 50.0;
 
 /// Writes all of them.
 pub fn write(folder: &str) -> Result<()> {
-    write_file(format!("{folder}/reference.csv"), reference()?.as_bytes())?;
+    write_file(format!("{folder}/reference.csv"), reference()?)?;
     for entry in fs::read_dir(root().join("scenes"))? {
         let path = entry?.path();
         if path.extension().is_some_and(|extension| extension == "toml") {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             let table = scene(&path).with_context(|| name.clone().into_owned())?;
-            write_file(format!("{folder}/scenes/{name}.csv"), table.as_bytes())?;
+            write_file(format!("{folder}/scenes/{name}.csv"), table)?;
         }
     }
     Ok(())

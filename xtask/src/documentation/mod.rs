@@ -5,7 +5,7 @@ mod block;
 #[path = "../../../build/description.rs"]
 mod description;
 
-use crate::commands::read;
+use crate::commands::text;
 use anyhow::{Context, Result, ensure};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
@@ -23,8 +23,8 @@ const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
 
 /// The page as HTML.
 pub fn page(variant: &Variant) -> Result<String> {
-    let readme = String::from_utf8(read("README.md")?)?;
-    let springs = String::from_utf8(read("docs/spring-files.md")?)?;
+    let readme = text("README.md")?;
+    let springs = text("docs/spring-files.md")?;
     let springs = springs.trim_start_matches("# Spring files").replace("\n## ", "\n### ");
     let document = Document::parse(&variant.description)?;
     let model = document.root_element();

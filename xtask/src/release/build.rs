@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::commands::{cargo, command, read, run, write};
+use crate::commands::{cargo, command, read, run, text, write};
 use anyhow::{Context, Result};
 use cargo_metadata::Metadata;
 
@@ -85,20 +85,18 @@ fn apple_flags(lld: &Path) -> Vec<String> {
 /// A file that names what the library exports: without one zig exports everything, as MinGW's linkers do.
 fn exports(folder: &Path) -> Result<PathBuf> {
     let names = declared().into_iter().map(|name| format!("    {name}\n"));
-    write(
-        folder.join("exports.def"),
-        format!("EXPORTS\n{}", names.collect::<String>()).as_bytes(),
-    )
+    let text = format!("EXPORTS\n{}", names.collect::<String>());
+    write(folder.join("exports.def"), text)
 }
 
 /// A folder that stands for the SDK of macOS: the list of what its system library exports, as zig has it.
 fn sdk(zig: &Path, folder: &Path) -> Result<PathBuf> {
-    let text = read(zig.with_file_name("lib").join("libc/darwin/libSystem.tbd"))?;
+    let list = text(zig.with_file_name("lib").join("libc/darwin/libSystem.tbd"))?;
     // A processor that this linker does not know yet.
-    let text = String::from_utf8(text)?.replace("arm64e.x1-", "arm64e-");
+    let list = list.replace("arm64e.x1-", "arm64e-");
     let sdk = folder.join("MacOSX.sdk");
     for name in ["System", "c", "m", "iconv"] {
-        write(sdk.join(format!("usr/lib/lib{name}.tbd")), text.as_bytes())?;
+        write(sdk.join(format!("usr/lib/lib{name}.tbd")), &list)?;
     }
     Ok(sdk)
 }

@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let runs_here = libraries.iter().any(|(platform, _)| trial::is_host(platform));
     let packed = release.packed(&libraries)?;
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
-    write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed).as_bytes())?;
+    write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed))?;
     explore::page()?;
     let wheels: BTreeSet<_> = libraries.iter().map(|(platform, _)| platform.wheel).collect();
     for wheel in wheels {
