@@ -40,20 +40,16 @@ pub fn level(text: &str, frequency: f64) -> Result<[f64; 2], RunError> {
         opens(&scene, &file.inputs)
     };
     let (mut low, mut high) = (linear / FACTOR, linear);
-    if opens(high)? {
-        while opens(low)? {
-            (low, high) = (low / FACTOR, low);
+    let mut guesses = 0..GUESSES;
+    while !opens(high)? {
+        if guesses.next().is_none() {
+            return Ok([f64::INFINITY, linear]);
         }
-    } else {
-        for guess in 1.. {
-            (low, high) = (high, FACTOR * high);
-            if opens(high)? {
-                break;
-            }
-            if guess == GUESSES {
-                return Ok([f64::INFINITY, linear]);
-            }
-        }
+        (low, high) = (high, FACTOR * high);
+    }
+    // Below a guess that was raised lies one that was too low.
+    while low < linear && opens(low)? {
+        (low, high) = (low / FACTOR, low);
     }
     while high > (1.0 + RESOLUTION) * low {
         let middle = (low * high).sqrt();
