@@ -20,9 +20,8 @@ struct Tiny {
     target: &'static str,
     exports: Vec<String>,
     data: Vec<u8>,
-    imports: &'static [&'static str],
+    import: &'static str,
     minimum_system: &'static str,
-    install_name: &'static str,
     arguments: &'static [&'static str],
 }
 
@@ -32,9 +31,8 @@ fn good(target: &'static str) -> Tiny {
         target,
         exports: declared().into_iter().collect(),
         data: GUID.into(),
-        imports: &["/usr/lib/libSystem.B.dylib"],
+        import: "/usr/lib/libSystem.B.dylib",
         minimum_system: "11.0",
-        install_name: "@rpath/RelayContact.dylib",
         arguments: &[],
     }
 }
@@ -47,23 +45,20 @@ impl Tiny {
     fn link(&self) -> Result<Vec<u8>> {
         let folder = tempfile::tempdir()?;
         let architecture = if self.is_arm() { "arm64" } else { "x86_64" };
-        let (name, minimum) = (self.install_name, self.minimum_system);
+        let (import, minimum) = (self.import, self.minimum_system);
         // The linker that comes with Rust, or that of LLVM.
         let mut linker = Command::new(lld(Path::new("rustc")).unwrap_or_else(|_| "lld".into()));
         linker
             .current_dir(folder.path())
             .args(["-flavor", "darwin", "-dylib", "-arch", architecture])
-            .args(["-platform_version", "macos", minimum, minimum, "-install_name", name])
-            .args(["-o", "library", "object.o"])
+            .args(["-platform_version", "macos", minimum, minimum])
+            .args(["-o", "library", "object.o", "imported.tbd"])
+            .args(["-install_name", "@rpath/RelayContact.dylib"])
             .args(self.arguments);
-        for (number, library) in self.imports.iter().enumerate() {
-            let stub = format!("imported{number}.tbd");
-            let text = format!(
-                "--- !tapi-tbd\ntbd-version: 4\ntargets: [ {architecture}-macos ]\ninstall-name: '{library}'\n...\n"
-            );
-            fs::write(folder.path().join(&stub), text)?;
-            linker.arg(stub);
-        }
+        let stub = format!(
+            "--- !tapi-tbd\ntbd-version: 4\ntargets: [ {architecture}-macos ]\ninstall-name: '{import}'\n...\n"
+        );
+        fs::write(folder.path().join("imported.tbd"), stub)?;
         fs::write(folder.path().join("object.o"), self.object()?)?;
         output(&mut linker)?;
         Ok(fs::read(folder.path().join("library"))?)
@@ -141,11 +136,11 @@ fn every_defect_fails_its_check_alone() -> Result<()> {
         ("exported symbols", |tiny| {
             tiny.exports.retain(|name| name != "fmi2DoStep");
         }),
-        ("imported libraries", |tiny| tiny.imports = &["/usr/lib/libz.1.dylib"]),
+        ("imported libraries", |tiny| tiny.import = "/usr/lib/libz.1.dylib"),
         ("search paths", |tiny| tiny.arguments = &["-rpath", "/opt/lib"]),
         ("macOS version", |tiny| tiny.minimum_system = "11.1"),
         ("install name", |tiny| {
-            tiny.install_name = "/build/librelay_contact.dylib";
+            tiny.arguments = &["-install_name", "/build/librelay_contact.dylib"];
         }),
         ("size", |tiny| tiny.data.resize(SIZE, 1)),
         ("GUID", |tiny| tiny.data[5] ^= 1),
