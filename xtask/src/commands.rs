@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::Instant;
 use std::{env, fs};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
 /// The project's top folder: that of the package which cargo runs, or the current one.
 pub fn root() -> PathBuf {
@@ -60,9 +60,7 @@ pub fn run(command: &mut Command) -> Result<()> {
     let status = command
         .status()
         .with_context(|| format!("cannot start: {}", line(command)))?;
-    if !status.success() {
-        bail!("failed ({status}): {}", line(command));
-    }
+    ensure!(status.success(), "failed ({status}): {}", line(command));
     Ok(())
 }
 

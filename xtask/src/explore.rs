@@ -4,7 +4,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 
 use crate::commands::{cargo, read, run, text, write};
-use anyhow::{Result, bail};
+use anyhow::{Result, ensure};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
@@ -52,15 +52,13 @@ pub fn page() -> Result<PathBuf> {
         ("/*version*/", env!("CARGO_PKG_VERSION").to_owned()),
         ("/*library*/", library),
     ] {
-        if page.matches(mark).count() != 1 {
-            bail!("explore/page/page.html: not once: {mark}");
-        }
+        let count = page.matches(mark).count();
+        ensure!(count == 1, "explore/page/page.html: not once: {mark}");
         page = page.replace(mark, &contents);
     }
-    if page.len() > SIZE {
-        bail!("the page has {} bytes; at most {SIZE} are allowed", page.len());
-    }
-    write("dist/explore.html", page.as_bytes())
+    let size = page.len();
+    ensure!(size <= SIZE, "the page has {size} bytes; at most {SIZE} are allowed");
+    write("dist/explore.html", page)
 }
 
 /// The library in WebAssembly.

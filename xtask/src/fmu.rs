@@ -5,7 +5,7 @@ use std::env;
 use std::env::consts::{ARCH, DLL_EXTENSION, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::path::{Path, PathBuf};
 
-use crate::commands::{cargo, command, output, read, root, run, write};
+use crate::commands::{cargo, is_there, read, root, run, write};
 use anyhow::{Result, bail};
 use cargo_metadata::Metadata;
 use relay_contact::C_HEADER;
@@ -59,7 +59,7 @@ fn build_library(metadata: &Metadata) -> Result<()> {
     }
     let built = run(&mut build);
     // Rust links with the C compiler; its own message is less clear.
-    if built.is_err() && cfg!(unix) && output(command("cc").arg("--version")).is_err() {
+    if built.is_err() && cfg!(unix) && !is_there("cc") {
         bail!("no C compiler: Rust needs one to link (on Debian: apt-get install gcc libc6-dev)");
     }
     built

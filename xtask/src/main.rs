@@ -88,7 +88,7 @@ fn main() -> ExitCode {
         Task::Docs => site::run(),
         Task::Demo => demo(),
         Task::Accuracy(arguments) => report::accuracy(&arguments),
-        Task::Effects => report::effects(),
+        Task::Effects => report::with_component("effects"),
         Task::Report(arguments) => report::run(&arguments),
         Task::Importers => importers::run(),
         Task::Valgrind => valgrind::run(),

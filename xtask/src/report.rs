@@ -2,7 +2,6 @@
 //! programs write.
 
 use std::ffi::OsString;
-use std::path::Path;
 
 use anyhow::Result;
 
@@ -41,11 +40,11 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     python::report("report", &arguments.arguments)
 }
 
-/// What each effect costs and changes, for `docs/effects.md`.
-pub fn effects() -> Result<()> {
+/// A task of the package `report` that runs the component.
+pub fn with_component(task: &str) -> Result<()> {
     python::prepare()?;
     fmu::build()?;
-    python::report("effects", &[""; 0])
+    python::report(task, &[""; 0])
 }
 
 /// Measures time over accuracy and what instances cost, and writes tables and figures of `docs/accuracy.md`.
@@ -58,15 +57,7 @@ pub fn accuracy(arguments: &Arguments) -> Result<()> {
     if arguments.has(&["--quick", "--help", "-h"]) {
         return Ok(());
     }
-    python::prepare()?;
-    fmu::build()?;
-    python::report("accuracy", &[""; 0])
-}
-
-/// The report in its quick form, of what the tests have left, and its own tests in a browser.
-pub fn test(component: &Path) -> Result<()> {
-    python::report("report", &["--quick"])?;
-    python::test(&["report"], component)
+    with_component("accuracy")
 }
 
 /// Whether Chromium is installed, by one of its names.

@@ -38,7 +38,8 @@ pub fn run(arguments: Arguments) -> Result<()> {
         })?;
         // Of what both have left.
         if_installed("report", report::has_chromium(), report::CHROMIUM_MISSING, || {
-            report::test(&fmu::path())
+            python::report("report", &["--quick"])?;
+            python::test(&["report"], &fmu::path())
         })
     })
 }

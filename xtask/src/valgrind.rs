@@ -5,13 +5,10 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 
 use crate::commands::{cargo, is_there, run as run_command};
-use anyhow::{Result, bail};
+use anyhow::{Result, ensure};
 
 use crate::linked;
 use crate::release::trial::{Runner, Trial};
-
-/// Random calls made under valgrind, fifty times slower there.
-const CALLS: &str = "2000";
 
 /// The message where valgrind is missing.
 pub const MISSING: &str = "valgrind is missing (on Debian: apt-get install valgrind)";
@@ -28,9 +25,7 @@ const VALGRIND: [&str; 6] = [
 
 /// Runs the campaign and the C program under valgrind.
 pub fn run() -> Result<()> {
-    if !is_there("valgrind") {
-        bail!(MISSING);
-    }
+    ensure!(is_there("valgrind"), MISSING);
     let metadata = linked::metadata()?;
     let mut campaign = cargo();
     campaign
@@ -43,7 +38,8 @@ pub fn run() -> Result<()> {
             "--skip=thousands",
             "--skip=every_call_in_every_state",
         ])
-        .env("CAMPAIGN_CALLS", CALLS);
+        // Random calls are fifty times slower here.
+        .env("CAMPAIGN_CALLS", "2000");
     run_command(&mut campaign)?;
     let runner = Runner {
         compiler: vec!["cc".into()],

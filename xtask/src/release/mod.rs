@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use crate::commands::write;
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use cargo_metadata::Metadata;
 use clap::builder::PossibleValuesParser;
 use sha2::{Digest, Sha256};
@@ -56,9 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             }
         }
     }
-    if libraries.is_empty() {
-        bail!("no platform could be built");
-    }
+    ensure!(!libraries.is_empty(), "no platform could be built");
     let runs_here = libraries.iter().any(|(platform, _)| trial::is_host(platform));
     let packed = release.packed(&libraries)?;
     let archive = write("dist/release/RelayContact.fmu", &packed)?;
@@ -82,9 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         println!("NOT RUN, the archive has no library for this machine");
     }
     println!("== dist/release/RelayContact.fmu\n{}", lines.join("\n"));
-    if !left_out.is_empty() {
-        bail!("the archive lacks {}", left_out.join(", "));
-    }
+    ensure!(left_out.is_empty(), "the archive lacks {}", left_out.join(", "));
     Ok(())
 }
 

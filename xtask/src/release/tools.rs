@@ -20,6 +20,17 @@ pub struct Rust {
 impl Rust {
     /// Finds it.
     pub fn find() -> Result<Self> {
+        // The compiler itself, not rustup's stand-in for it.
+        let with_sources = |rustc: &str| {
+            let sysroot = sysroot(rustc).ok()?;
+            let sources = sysroot.join("lib/rustlib/src/rust");
+            let leads_to = sources.canonicalize().ok()?;
+            let found = sources.join("library/Cargo.toml").exists();
+            found.then_some(Self {
+                rustc: sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}")),
+                sources: [sources, leads_to],
+            })
+        };
         let rust = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources);
         rust.context(
             "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
@@ -63,19 +74,6 @@ impl Tools {
         };
         ZIG_LICENCES.into_iter().map(text).collect()
     }
-}
-
-/// The compiler itself, not rustup's stand-in for it, and the sources, where it has them.
-fn with_sources(rustc: &str) -> Option<Rust> {
-    let sysroot = sysroot(rustc).ok()?;
-    let sources = sysroot.join("lib/rustlib/src/rust");
-    let rustc = sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}"));
-    let leads_to = sources.canonicalize().ok()?;
-    let found = sources.join("library/Cargo.toml").exists();
-    found.then_some(Rust {
-        rustc,
-        sources: [sources, leads_to],
-    })
 }
 
 /// Links for macOS and WebAssembly. It comes with rustup's toolchains; Debian's have none.

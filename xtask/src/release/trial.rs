@@ -62,15 +62,14 @@ fn compare(forces: &[f64]) -> Result<String> {
     let (_, preload) = expected.first().context("no forces")?;
     let allowed = file.scene.solver.effective_tolerance() * preload;
     let count = forces.len();
-    if count != expected.len() {
-        bail!("{count} forces instead of {}", expected.len());
-    }
+    ensure!(count == expected.len(), "{count} forces instead of {}", expected.len());
     let mut largest = 0.0_f64;
     for (force, (time, expected)) in forces.iter().zip(&expected) {
         let difference = (force - expected).abs();
-        if difference.is_nan() || difference > allowed {
-            bail!("{force} N at {time} s, but {expected} N on this machine; allowed difference {allowed:.1e} N");
-        }
+        ensure!(
+            difference <= allowed,
+            "{force} N at {time} s, but {expected} N on this machine; allowed difference {allowed:.1e} N"
+        );
         largest = largest.max(difference);
     }
     Ok(if largest == 0.0 {
