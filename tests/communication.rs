@@ -2,9 +2,10 @@
 
 use relay_contact::error::StepErrorCause;
 use relay_contact::inputs::Inputs;
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::{Event, Simulation};
-use relay_contact::variables::{BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 use testing::near;
 use testing::scenes::{self, accelerated, at_rest, force_scale, largest_difference};
 
@@ -59,21 +60,16 @@ fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
     }
 }
 
+/// Also with an input that changes: it counts from its communication point on.
 #[test]
 fn what_is_read_inside_the_integrators_steps_is_within_the_tolerance() {
-    for amplitude in [98.0, 400.0] {
-        for tolerance in [1e-3, 1e-5, 1e-7] {
-            for size in [1, 2, 5, 10] {
+    let pulsed = |time: f64| accelerated(if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 }, 0.0);
+    for size in [1, 2, 5, 10] {
+        for amplitude in [98.0, 400.0] {
+            for tolerance in [1e-3, 1e-5, 1e-7] {
                 check(&shaken(amplitude, tolerance), size, |_| Inputs::default());
             }
         }
-    }
-}
-
-#[test]
-fn an_input_that_changes_counts_from_its_communication_point_on() {
-    let pulsed = |time: f64| accelerated(if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 }, 0.0);
-    for size in [1, 2, 5, 10] {
         check(&shaken(98.0, 1e-6), size, pulsed);
     }
 }
@@ -176,30 +172,6 @@ fn a_simulation_may_start_before_one_second_before_zero() {
 }
 
 #[test]
-fn events_show_from_the_communication_point_after_them_on() {
-    let scene = shaken(400.0, 1e-6);
-    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-    let (mut openings, mut closings, mut seen) = (0, 0, [-1.0; 2]);
-    let size = 3e-7;
-    for k in 0..7200_u32 {
-        let time = f64::from(k) * size;
-        simulation.step(&Inputs::default(), time, size).unwrap();
-        let now = simulation.time();
-        let events = [RealOutput::ContactLastOpening, RealOutput::ContactLastClosing].map(|o| simulation.real(o));
-        for ((event, seen), count) in events.iter().zip(&mut seen).zip([&mut openings, &mut closings]) {
-            if event != seen {
-                assert!((time..=now).contains(event), "{event} seen at {now}");
-                (*seen, *count) = (*event, *count + 1);
-            }
-        }
-        let closed = events[1] >= events[0];
-        assert_eq!(simulation.boolean(BooleanOutput::ContactClosed), closed, "{now}");
-        assert_eq!(simulation.real(RealOutput::ContactForce) > 0.0, closed, "{now}");
-    }
-    assert!(openings >= 2 && closings >= 2, "{openings} {closings}");
-}
-
-#[test]
 fn a_contact_at_rest_is_not_integrated() {
     for parts in [1, 3600] {
         let scene = Scene::default();
@@ -264,31 +236,25 @@ fn events(size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<Event> {
     events
 }
 
+/// A push that comes and goes takes back what the integrator has done ahead. Without it: hard case "Chatter at 41 g".
 #[test]
 fn every_event_is_reported_once() {
-    // A push that comes and goes takes back what the integrator has done ahead.
     let pulsed = |time: f64| accelerated(if (time / 5e-4 + 1e-6) % 2.0 < 1.0 { 1.0 } else { 0.0 }, 0.0);
-    for pulse in [false, true] {
-        let inputs = |time: f64| if pulse { pulsed(time) } else { Inputs::default() };
-        let expected = events(2000, inputs);
-        assert!(expected.len() >= 5, "{expected:?}");
-        for pair in expected.windows(2) {
-            assert!(
-                pair[0].time < pair[1].time && pair[0].closes != pair[1].closes,
-                "{pair:?}"
-            );
-        }
-        for size in [12_000, 400, 40, 4, 1] {
-            if pulse && size > 2000 {
-                continue;
-            }
-            let found = events(size, inputs);
-            assert_eq!(found.len(), expected.len(), "{size}: {found:?} {expected:?}");
-            for (found, expected) in found.iter().zip(&expected) {
-                assert_eq!(found.closes, expected.closes);
-                // A force wrong by the tolerance reaches zero at another time.
-                near(size, found.time, expected.time, 1e-8);
-            }
+    let expected = events(2000, pulsed);
+    assert!(expected.len() >= 5, "{expected:?}");
+    for pair in expected.windows(2) {
+        assert!(
+            pair[0].time < pair[1].time && pair[0].closes != pair[1].closes,
+            "{pair:?}"
+        );
+    }
+    for size in [400, 40, 4, 1] {
+        let found = events(size, pulsed);
+        assert_eq!(found.len(), expected.len(), "{size}: {found:?} {expected:?}");
+        for (found, expected) in found.iter().zip(&expected) {
+            assert_eq!(found.closes, expected.closes);
+            // A force wrong by the tolerance reaches zero at another time.
+            near(size, found.time, expected.time, 1e-8);
         }
     }
 }
@@ -367,14 +333,10 @@ fn inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance() {
             };
             for tolerance in [1e-3, 1e-6, 1e-8] {
                 let scene = with(tolerance, 0);
-                let modes = Simulation::new(&scene, &Inputs::default(), 0.0)
-                    .unwrap()
-                    .model()
-                    .modes()
-                    .len();
+                let modes = Model::new(&scene, 0.0).unwrap().modes().len();
                 // What the number of modes makes is no matter of the steps.
                 let (exact, _) = driven(&with(1e-11, i32::try_from(modes).unwrap()), &plan);
-                let (found, [steps, rejected]) = driven(&scene, &plan);
+                let (found, _) = driven(&scene, &plan);
                 let mut scale = scenes::force_scale(&scene);
                 let mut most = 0.0_f64;
                 for (found, exact) in found.iter().zip(&exact) {
@@ -382,9 +344,6 @@ fn inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance() {
                     most = (0..if watched { 3 } else { 1 })
                         .fold(most, |most, i| most.max((found[i] - exact[i]).abs() / scale));
                 }
-                println!(
-                    "{amplitude} m/s2, {damping}, {name}, {tolerance:e}: {most:.1e}, {steps} steps, {rejected} rejected"
-                );
                 assert!(
                     most <= tolerance,
                     "{amplitude} m/s2, {damping}, {name}, {tolerance:e}: {most:e}"
@@ -399,6 +358,9 @@ fn inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance() {
 fn steps_after_an_input_has_changed_begin_with_the_length_that_the_last_change_needed() {
     let [.., (_, plan)] = plans();
     let (_, [steps, rejected]) = driven(&shaken(98.0, 1e-6), &plan);
-    println!("{steps} steps, {rejected} rejected");
-    assert!(5 * rejected < steps && steps < 10 * i32::try_from(plan.len()).unwrap());
+    let most = 10 * i32::try_from(plan.len()).unwrap();
+    assert!(
+        5 * rejected < steps && steps < most,
+        "{steps} steps, {rejected} rejected"
+    );
 }

@@ -10,69 +10,36 @@ use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 use testing::kinds::KINDS;
 use testing::{relays, scenes};
 
-/// A contact's outputs that have to agree.
-#[derive(Clone, Copy, Debug)]
-struct Outputs {
-    time: f64,
-    force: f64,
-    least: f64,
-    greatest: f64,
-    last_opening: f64,
-    last_closing: f64,
-    closed: bool,
-}
-
-fn outputs(simulation: &Simulation, (names, closed): relays::Outputs) -> Outputs {
-    let [force, least, greatest, last_opening, last_closing] = names.map(|name| simulation.real(name));
-    Outputs {
-        time: simulation.time(),
-        force,
-        least,
-        greatest,
-        last_opening,
-        last_closing,
-        closed: simulation.boolean(closed),
-    }
-}
+/// Force, extremes of the step, last opening and closing of a contact at an instant, and whether it is closed.
+type Read = (f64, [f64; 5], bool);
 
 /// Says what disagrees after a communication step.
-fn disagreement(before: &Outputs, after: &Outputs, bonded: bool) -> Option<&'static str> {
-    let Outputs {
-        time,
-        force,
-        least,
-        greatest,
-        ..
-    } = *after;
-    let range = least..=greatest;
-    let within = |instant: f64| (before.time..=time).contains(&instant);
-    let opened = within(after.last_opening) && after.last_opening != before.last_opening;
-    let closed = within(after.last_closing) && after.last_closing != before.last_closing;
-    let was_open = opened || closed || before.force == 0.0;
-    let was_closed = opened || closed || before.force != 0.0;
-    [
+fn disagreement((start, before, _): Read, (time, after, closed): Read, bonded: bool) -> Option<&'static str> {
+    let [was, _, _, last_opening, last_closing] = before;
+    let [force, least, greatest, opening, closing] = after;
+    let (opened, touched) = (opening != last_opening, closing != last_closing);
+    let changed = opened || touched;
+    let (range, step) = (least..=greatest, start..=time);
+    let strange = opened && !step.contains(&opening) || touched && !step.contains(&closing);
+    let wrong = [
         (
             !range.contains(&force),
             "the force at the end is not between the extremes",
         ),
-        (!range.contains(&before.force), "that at the start is not"),
+        (!range.contains(&was), "that at the start is not"),
         (!bonded && least < 0.0, "a tensile force"),
-        (least == 0.0 && !was_open, "no force, and no opening"),
-        (was_open && least != 0.0, "open, with a force"),
-        (greatest > 0.0 && !was_closed, "a force, and no closing"),
         (
-            after.closed != (force > 0.0 || !bonded && after.last_closing == time),
+            (changed || was == 0.0) != (least == 0.0),
+            "open with a force, or no force without an opening",
+        ),
+        (greatest > 0.0 && !changed && was == 0.0, "a force, and no closing"),
+        (
+            closed != (force > 0.0 || !bonded && closing == time),
             "closed is not a force",
         ),
-        (after.last_opening < before.last_opening, "an opening taken back"),
-        (after.last_closing < before.last_closing, "a closing taken back"),
-        (
-            after.last_opening.max(after.last_closing) > time,
-            "an event in the future",
-        ),
-    ]
-    .into_iter()
-    .find_map(|(wrong, what)| wrong.then_some(what))
+        (strange, "an event of another step"),
+    ];
+    wrong.into_iter().find_map(|(wrong, what)| wrong.then_some(what))
 }
 
 /// Steps through a scene, with lengths of all kinds, for `duration` seconds.
@@ -82,22 +49,22 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
     };
     let bonded = scene.effects.contact_law == ContactLawKind::Bonded;
     let contacts = relays::contacts(scene);
-    let read =
-        |simulation: &Simulation| -> Vec<_> { contacts.iter().map(|names| outputs(simulation, *names)).collect() };
+    let read = |simulation: &Simulation| -> Vec<Read> {
+        let each = contacts.iter().map(|(names, closed)| {
+            let values = names.map(|name| simulation.real(name));
+            (simulation.time(), values, simulation.boolean(*closed))
+        });
+        each.collect()
+    };
     // Two in parallel are interrupted while each has more than the threshold.
     let threshold = scene.chatter.resistance_threshold / if scene.effects.parallel_contact { 2.0 } else { 1.0 };
     let mut before = read(&simulation);
     let count = |simulation: &Simulation| {
-        let [longest, total] = [
-            RealOutput::ChatterLongestInterruption,
-            RealOutput::ChatterTotalInterruption,
-        ]
-        .map(|name| simulation.real(name));
-        (
+        [
             f64::from(simulation.integer(IntegerOutput::ChatterCount)),
-            longest,
-            total,
-        )
+            simulation.real(RealOutput::ChatterLongestInterruption),
+            simulation.real(RealOutput::ChatterTotalInterruption),
+        ]
     };
     let mut counted = count(&simulation);
     let mut size = 0.0;
@@ -119,22 +86,19 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
         }
         let after = read(&simulation);
         for (before, after) in before.iter().zip(&after) {
-            let what = disagreement(before, after, bonded);
+            let what = disagreement(*before, *after, bonded);
             assert!(
                 what.is_none(),
                 "{case}, step of {size:e} s: {what:?}: {before:?} {after:?}"
             );
         }
         let now = count(&simulation);
-        let (times, longest, total) = now;
+        let [_, longest, total] = now;
         let in_all = longest < scene.chatter.minimum_duration || longest <= total * (1.0 + 1e-12);
         let interrupted = simulation.real(RealOutput::StepMaximumResistance) >= threshold;
+        let never_less = now.iter().zip(counted).all(|(now, before)| *now >= before);
         assert!(
-            times >= counted.0
-                && longest >= counted.1
-                && total >= counted.2
-                && in_all
-                && (total == counted.2 || interrupted),
+            never_less && in_all && (total == counted[2] || interrupted),
             "{case}, step of {size:e} s: interruptions {counted:?} {now:?}"
         );
         (before, counted) = (after, now);

@@ -6,12 +6,13 @@ use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::RealOutput;
+use relay_contact::variables::{ExcitationKind, RealOutput};
 use roxmltree::Document;
 use testing::near;
-use testing::scenes::{LAWS, NEAR, accelerated, check_slope, force_scale, propped_mass, range, shaken, threes};
+use testing::scenes::{LAWS, accelerated, force_scale, propped_mass, shaken};
 
-const FREQUENCY: f64 = 1000.0;
+use crate::friction::rubbing;
+use crate::second::changeover;
 
 /// However a ramp is cut into communication steps, it is the same ramp.
 #[test]
@@ -109,63 +110,134 @@ fn an_open_contact_has_the_voltage_of_the_source_at_most() {
     }
 }
 
-const CONTINUOUS: [RealOutput; 8] = [
-    RealOutput::ContactForce,
-    RealOutput::ContactElasticForce,
-    RealOutput::ContactResistance,
-    RealOutput::ContactConductance,
-    RealOutput::ContactVoltage,
-    RealOutput::ContactIndentation,
-    RealOutput::TipDisplacement,
-    RealOutput::TipVelocity,
-];
+/// Time between the points at which values and rates are compared, s.
+const NEAR: f64 = 1e-7;
 
-/// A derivative lies between the slopes just before and just after it, at ends of the integrator's steps and inside them,
-/// also where the contact opens and closes. Values are wrong by the tolerance, so slopes by that over the time between two.
+/// Values and rates of outputs at three points of time, each [`NEAR`] after the one before.
+type Three = [Vec<(f64, f64)>; 3];
+
+/// A derivative lies between the slopes just before and just after it, at ends of the integrator's steps and inside them. Values are
+/// wrong by the tolerance, so slopes by that over the time between two. Looked at every `size` seconds over 2 ms, where the last of
+/// the points so far `counts`.
+fn check_slopes(
+    case: &str,
+    mut scene: Scene,
+    outputs: &[RealOutput],
+    size: f64,
+    counts: impl Fn(RealOutput, &[Three]) -> bool,
+) {
+    scene.solver.tolerance = 1e-9;
+    let inputs = Inputs {
+        contact_current: 0.1,
+        ..Inputs::default()
+    };
+    let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
+    let mut rows: Vec<Three> = Vec::new();
+    while simulation.time() < 2e-3 {
+        rows.push([size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+            simulation.step(&inputs, simulation.time(), step).unwrap();
+            let read = |output: &RealOutput| (simulation.real(*output), simulation.rate(*output).unwrap());
+            outputs.iter().map(read).collect()
+        }));
+    }
+    for (n, output) in outputs.iter().enumerate() {
+        let counting = (1..=rows.len()).filter(|end| counts(*output, &rows[..*end]));
+        let counting: Vec<_> = counting.map(|end| rows[end - 1].each_ref().map(|at| at[n])).collect();
+        assert!(
+            counting.len() as f64 > 2e-4 / size,
+            "{case}, {output:?}: {}",
+            counting.len()
+        );
+        let values = || counting.iter().map(|[_, now, _]| now.0);
+        let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
+        let noise = 2.0 * scene.solver.tolerance * range / NEAR;
+        let steepest = counting.iter().map(|[_, now, _]| now.1.abs()).fold(0.0, f64::max);
+        assert!(
+            steepest > 100.0 * noise,
+            "{case}, {output:?}: nothing to be seen above {noise:e}"
+        );
+        for [before, now, after] in counting {
+            let slopes = [now.0 - before.0, after.0 - now.0].map(|difference| difference / NEAR);
+            let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
+            assert!(
+                (low - noise..=high + noise).contains(&now.1),
+                "{case}, {size} s, {output:?}: {} not in {slopes:?}",
+                now.1
+            );
+        }
+    }
+}
+
+/// Also where the contact opens and closes.
 #[test]
 fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
-    const TOLERANCE: f64 = 1e-9;
+    let outputs = [
+        RealOutput::ContactForce,
+        RealOutput::ContactConductance,
+        RealOutput::ContactIndentation,
+        RealOutput::TipDisplacement,
+        RealOutput::TipVelocity,
+        // Where the contact opens these jump: to what `resistance.open` says, which the conductance tells too; or to zero, as the
+        // force without damping is not zero yet.
+        RealOutput::ContactResistance,
+        RealOutput::ContactVoltage,
+        RealOutput::ContactElasticForce,
+    ];
     for law in LAWS {
         for (amplitude, size) in [(98.0, 1e-6), (98.0, 1e-5), (400.0, 1e-6), (400.0, 1e-5)] {
-            let mut scene = shaken(amplitude, FREQUENCY);
+            let mut scene = shaken(amplitude, 1000.0);
             scene.effects.contact_law = law;
-            scene.solver.tolerance = TOLERANCE;
-            let inputs = Inputs {
-                contact_current: 0.1,
-                ..Inputs::default()
+            // Steepest at no force, where the contact opens or closes between the three.
+            let counts = |output, rows: &[Three]| {
+                output != RealOutput::ContactConductance || rows.last().unwrap().iter().all(|at| at[0].0 > 0.0)
             };
-            let rows = threes(&scene, &inputs, CONTINUOUS, size);
-            for (n, output) in CONTINUOUS.into_iter().enumerate() {
-                // Where the contact opens these jump: to what `resistance.open` says, which the conductance tells too; or to
-                // zero, as the force without damping is not zero yet.
-                let jumps = matches!(
-                    output,
-                    RealOutput::ContactResistance | RealOutput::ContactVoltage | RealOutput::ContactElasticForce
-                );
-                if jumps && amplitude > 98.0 {
-                    continue;
-                }
-                let noise = 2.0 * TOLERANCE * range(&rows, n) / NEAR;
-                let steepest = rows.iter().map(|[_, now, _]| now[n].1.abs()).fold(0.0, f64::max);
-                assert!(
-                    steepest > 100.0 * noise,
-                    "{output:?}: nothing to be seen above {noise:e}"
-                );
-                for row in &rows {
-                    let [before, _, after] = row;
-                    // Steepest at no force, where the contact opens or closes between the three.
-                    if output == RealOutput::ContactConductance && before[0].0.min(after[0].0) <= 0.0 {
-                        continue;
-                    }
-                    check_slope(
-                        row,
-                        n,
-                        noise,
-                        &format!("{law:?}, {amplitude} m/s2, {size} s, {output:?}"),
-                    );
-                }
-            }
+            let outputs = if amplitude > 98.0 { &outputs[..5] } else { &outputs };
+            check_slopes(&format!("{law:?}, {amplitude} m/s2"), scene, outputs, size, counts);
         }
+    }
+}
+
+#[test]
+fn derivatives_with_friction_are_slopes() {
+    let outputs = [
+        RealOutput::ContactSlip,
+        RealOutput::ContactForce,
+        RealOutput::ContactTangentialForce,
+        RealOutput::ContactSlipDistance,
+        RealOutput::FrictionEnergy,
+    ];
+    for (size, later, damping) in [(1e-6, 21, 8.063e-5), (1e-5, 3, 8.063e-5), (1e-5, 3, 0.0)] {
+        let mut scene = rubbing(shaken(98.0, 1000.0));
+        scene.contact.damping = damping;
+        // The slope of the friction force jumps where it begins or ceases to slip, and the spring answers within microseconds: so many
+        // points later.
+        let counts = |_, rows: &[Three]| {
+            let slips = |at: &Vec<(f64, f64)>| at[0].1 != 0.0;
+            let recent = &rows[rows.len().saturating_sub(later)..];
+            rows.len() > later && recent.iter().flatten().all(|at| slips(at) == slips(&recent[0][0]))
+        };
+        check_slopes(&format!("{damping} s"), scene, &outputs, size, counts);
+    }
+}
+
+#[test]
+fn derivatives_at_a_second_contact_are_slopes() {
+    let outputs = [
+        RealOutput::SecondForce,
+        RealOutput::SecondConductance,
+        RealOutput::ContactIndentation,
+        RealOutput::TipDisplacement,
+        RealOutput::TipVelocity,
+    ];
+    let mut scene = changeover(2e-5);
+    scene.effects.excitation = ExcitationKind::Sine;
+    scene.excitation.amplitude = -250.0;
+    scene.excitation.frequency = 300.0;
+    scene.second.damping = 2e-5;
+    // In the second contact all the while.
+    let closed = |_, rows: &[Three]| rows.last().unwrap().iter().all(|at| at[0].0 > 0.0);
+    for size in [1e-6, 1e-5] {
+        check_slopes("second contact", scene.clone(), &outputs, size, closed);
     }
 }
 

@@ -1,11 +1,11 @@
-//! The frequency domain against the transient of the linear contact, and against the superposition of the modes of beam and
-//! contact spring together.
+//! The frequency domain against the transient of the linear contact. `benchmarks/linear_scene.rs` compares that with the superposition
+//! of the modes of beam and contact spring together.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{self, Model, Space};
+use relay_contact::reference::{self, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput, ResistanceKind};
@@ -81,35 +81,6 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
                     );
                 }
             }
-        }
-    }
-}
-
-#[test]
-fn the_response_is_the_superposition_of_the_modes_of_beam_and_contact_spring() {
-    // These are coupled where beam and contact are damped differently.
-    for [alpha, beta] in [[0.0, 8.063e-5], [5125.0, 0.0]] {
-        for frequency in FREQUENCIES {
-            let scene = shaken([alpha, beta, beta], frequency);
-            let model = Model::new(&scene, 0.0).unwrap();
-            let omega = TAU * frequency;
-            let stiffness = model.preload().contact_stiffness;
-            let displacement: Complex<f64> = Space::new(model.modes().len())
-                .modes(&model.section(), model.preload().axial_force, stiffness)
-                .unwrap()
-                .iter()
-                .map(|mode| {
-                    let damping = alpha + beta * mode.omega_squared;
-                    -mode.tip * mode.participation / Complex::new(mode.omega_squared - omega * omega, omega * damping)
-                })
-                .sum();
-            let force = -stiffness * Complex::new(1.0, omega * beta) * displacement;
-            let response = reference::response(&model, omega);
-            let errors = [
-                (response.force - force).norm() / force.norm(),
-                (response.displacement - displacement).norm() / displacement.norm(),
-            ];
-            assert!(errors.iter().all(|error| *error < 1e-9), "{frequency} Hz: {errors:?}");
         }
     }
 }

@@ -111,39 +111,3 @@ pub fn forces(scene: &Scene, size: f64, count: u32) -> Vec<f64> {
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
-
-/// Time between the points at which values and rates are compared, s.
-pub const NEAR: f64 = 1e-7;
-
-/// Values and rates of outputs at three points of time, each [`NEAR`] after the one before.
-pub type Three<const N: usize> = [[(f64, f64); N]; 3];
-
-/// Such points of a scene with these inputs over 2 ms, `size` (s) from three to three.
-pub fn threes<const N: usize>(scene: &Scene, inputs: &Inputs, outputs: [RealOutput; N], size: f64) -> Vec<Three<N>> {
-    let mut simulation = Simulation::new(scene, inputs, 0.0).expect("a scene that can be simulated");
-    let mut rows = Vec::new();
-    while simulation.time() < 2e-3 {
-        rows.push([size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
-            simulation.step(inputs, simulation.time(), step).expect("a step");
-            outputs.map(|output| (simulation.real(output), simulation.rate(output).expect("continuous")))
-        }));
-    }
-    rows
-}
-
-/// The difference of the largest and the smallest value of an output.
-pub fn range<const N: usize>(rows: &[Three<N>], output: usize) -> f64 {
-    let values = || rows.iter().map(|[_, now, _]| now[output].0);
-    values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
-}
-
-/// Checks that the rate of an output lies between the slopes just before and just after it, which are wrong by `noise` at most.
-pub fn check_slope<const N: usize>([before, now, after]: &Three<N>, output: usize, noise: f64, case: &str) {
-    let slope = |from: &[(f64, f64); N], to: &[(f64, f64); N]| (to[output].0 - from[output].0) / NEAR;
-    let (slopes, rate) = ([slope(before, now), slope(now, after)], now[output].1);
-    let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
-    assert!(
-        (low - noise..=high + noise).contains(&rate),
-        "{case}: {rate} not in {slopes:?}"
-    );
-}

@@ -1,16 +1,13 @@
-//! The second contact of a changeover relay: its mirror image, its absence, and solutions of its own. Its motion, its false
-//! makes and the smallest gap are compared with another solution in `tests/python/test_second_contact.py`.
+//! The second contact of a changeover relay: its mirror image, its absence, and impacts. Its motion between contacts that
+//! move, its false makes and the smallest gap are compared with another solution in `tests/python/test_second_contact.py`.
 
 mod impacts;
 
-use std::path::Path;
-
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
-use testing::scenes::{NEAR, accelerated, check_slope, range, threes};
+use testing::scenes::accelerated;
 
 /// A relay whose moving contact lies open in the middle between both fixed ones.
 pub fn changeover(gap: f64) -> Scene {
@@ -149,87 +146,6 @@ fn a_far_second_contact_changes_nothing() {
             );
         }
     }
-}
-
-/// The rate of an output of the second contact lies between the slopes just before and just after it, as those of the
-/// first do (`tests/derivatives.rs`).
-#[test]
-fn rates_are_the_slopes_of_the_courses() {
-    let mut scene = changeover(2e-5);
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = -250.0;
-    scene.excitation.frequency = 300.0;
-    scene.second.damping = 2e-5;
-    scene.solver.tolerance = 1e-9;
-    let outputs = [
-        RealOutput::SecondForce,
-        RealOutput::SecondConductance,
-        RealOutput::ContactIndentation,
-        RealOutput::TipDisplacement,
-        RealOutput::TipVelocity,
-    ];
-    for size in [1e-6, 1e-5] {
-        let mut rows = threes(&scene, &Inputs::default(), outputs, size);
-        // In the second contact all the while.
-        rows.retain(|row| row.iter().all(|at| at[0].0 > 0.0));
-        assert!(
-            rows.len() as f64 > 2e-4 / size,
-            "{size} s: closed at {} points",
-            rows.len()
-        );
-        for (n, output) in outputs.into_iter().enumerate() {
-            // Values are wrong by the tolerance.
-            let noise = 2.0 * scene.solver.tolerance * range(&rows, n) / NEAR;
-            for row in &rows {
-                check_slope(row, n, noise, &format!("{size} s, {output:?}"));
-            }
-        }
-    }
-}
-
-/// The scene `changeover-make`: the contact goes over from one side to the other and back, with bounces at either.
-#[test]
-fn a_changeover_relay_switches() {
-    let file = SceneFile::read(Path::new("scenes/changeover-make.toml")).unwrap();
-    let mut contact = Simulation::new(
-        &file.scene,
-        &file.inputs_over(0.0, file.communication_step).unwrap(),
-        0.0,
-    )
-    .unwrap();
-    let preload = contact.real(RealOutput::PreloadForce);
-    // Beyond the second contact as far as it lay beyond the first, and by the indentation there.
-    let depth = contact.real(RealOutput::PreloadIndentation);
-    let pressed = preload + testing::scenes::tip_stiffness(&file.scene) * depth;
-    let (mut courses, mut makes) = (Vec::new(), Vec::new());
-    for (time, size) in file.steps() {
-        contact
-            .step(&file.inputs_over(time, size).unwrap(), time, size)
-            .unwrap();
-        let forces = [RealOutput::ContactForce, RealOutput::SecondForce].map(|output| contact.real(output));
-        assert!(forces.contains(&0.0), "{forces:?} N at {time} s");
-        courses.push((time + size, forces));
-        makes.push(
-            [IntegerOutput::ChatterFalseMakes, IntegerOutput::SecondFalseMakes].map(|output| contact.integer(output)),
-        );
-    }
-    let mean = |from: f64, to: f64, n: usize| {
-        let within = || courses.iter().filter(|(time, _)| (from..to).contains(time));
-        within().map(|(_, forces)| forces[n]).sum::<f64>() / within().count() as f64
-    };
-    println!(
-        "{} N, {pressed} N; {} N, {preload} N; {:?}",
-        mean(0.012, 0.015, 1),
-        mean(0.027, 0.03, 0),
-        makes.last()
-    );
-    // What still swings averages out over some periods of 0.7 ms, to a few parts in a thousand.
-    assert!((mean(0.012, 0.015, 1) / pressed - 1.0).abs() < 5e-3);
-    assert!((mean(0.027, 0.03, 0) / preload - 1.0).abs() < 5e-3);
-    // Nothing happens between both switchings.
-    assert_eq!(makes[1000], makes[1500]);
-    let last = makes.last().unwrap();
-    assert!(last.iter().all(|makes| *makes > 2), "{last:?} makes: no bounces");
 }
 
 /// A contact that is closed at the start has not been made; each make after an interruption counts.
