@@ -1,4 +1,4 @@
-//! What values do to the simulation.
+//! What values and derivatives of inputs do to the simulation.
 
 use relay_contact::fmi2::*;
 use testing::instance::Instance;
@@ -37,4 +37,36 @@ fn parameters_that_do_not_fit_end_initialisation_but_can_be_corrected_until_then
     );
     assert_eq!(fmu.step(0.0, 1e-5), fmi2Error);
     assert_eq!(fmu.reset(), fmi2OK);
+}
+
+#[test]
+fn a_derivative_counts_for_one_step() {
+    let fmu = Instance::initialized();
+    assert_eq!(fmu.set_rates(["support.displacement"], [1], [1e-3]), fmi2OK);
+    assert_eq!(fmu.step(0.0, 1e-4), fmi2OK);
+    let moved = fmu.real("tip.displacement") + fmu.real("contact.indentation");
+    let rates = ["tip.displacement", "contact.indentation"].map(|name| fmu.try_rate(name));
+    assert_eq!(rates.map(|(status, _)| status), [fmi2OK; 2]);
+    assert!((rates[0].1 + rates[1].1 - 1e-3).abs() < 1e-12, "{rates:?}");
+    // The fixed contact is where the derivative led; without one it goes back to its input.
+    assert_eq!(fmu.step(1e-4, 1e-4), fmi2OK);
+    let back = fmu.real("tip.displacement") + fmu.real("contact.indentation");
+    assert!((moved - back - 1e-7).abs() < 1e-18, "{moved} {back}");
+    assert_eq!(fmu.real("support.displacement"), 0.0);
+}
+
+#[test]
+fn higher_derivatives_of_inputs_have_no_effect_and_are_told_of_once() {
+    let fmu = Instance::initialized();
+    let names = ["support.displacement", "support.displacement", "base.acceleration"];
+    for step in 0..3 {
+        assert_eq!(fmu.set_rates(names, [1, 2, 3], [1e-3, 5.0, 1e9]), fmi2OK);
+        assert_eq!(fmu.step(f64::from(step) * 1e-4, 1e-4), fmi2OK);
+        let place = fmu.real("tip.displacement") + fmu.real("contact.indentation");
+        assert!((place - 2e-4 - 1e-7).abs() < 1e-18, "{place}");
+    }
+    fmu.expect_message(
+        fmi2Warning,
+        &["fmi2SetRealInputDerivatives: support.displacement", "order 2"],
+    );
 }
