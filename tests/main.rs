@@ -21,7 +21,6 @@ mod fmi_api;
 mod frequency_domain;
 mod friction;
 mod imports;
-mod input_table;
 mod many;
 mod parallel;
 mod preloaded_contact;
