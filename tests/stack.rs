@@ -7,10 +7,17 @@
 #![allow(clippy::undocumented_unsafe_blocks)] // every block calls a C function with what it needs
 
 use std::ffi::{CString, c_void};
+use std::path::Path;
 use std::{fs, panic, ptr, slice, thread};
 
 use relay_contact::fmi2::*;
-use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, GUID, guid_carrying};
+use relay_contact::inputs::Inputs;
+use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{
+    AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind, GUID, StringParameter,
+    guid_carrying,
+};
 use testing::instance::{Arguments, Instance, vr};
 
 /// Stack of a thread that makes all calls, bytes.
@@ -25,102 +32,66 @@ const PAINT: u8 = 0xa5;
 /// The spring file that holds modes.
 const MODES: &str = "tapered-cube-modes.toml";
 
-/// What touches the spring beside the first contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Beside {
-    Nothing,
-    Friction,
-    SecondContact,
-}
-
-/// A scene by its choices.
-#[derive(Clone, Copy, Debug)]
-struct Choices {
-    excitation: i32,
-    law: i32,
-    axial_force: i32,
-    beside: Beside,
-    spring: &'static str,
-    tolerance: f64,
-}
+/// The uniform spring, and files in `scenes/` of segments and of modes.
+const SPRINGS: [&str; 3] = ["", "springs/tapered-cube.toml", "springs/tapered-cube-modes.toml"];
 
 /// All that can be combined, with energy, extremes and interruptions, which take more, and with tolerances in turn.
-fn all() -> impl Iterator<Item = Choices> {
-    let excitations = ExcitationKind::CHOICES.iter();
-    let laws = || ContactLawKind::CHOICES.iter();
-    let axial_forces = || AxialForceKind::CHOICES.iter();
-    let beside = [Beside::Nothing, Beside::Friction, Beside::SecondContact];
-    let springs = ["", "tapered-cube.toml", MODES];
-    let rest = move || {
-        let springs = move |beside| springs.into_iter().map(move |spring| (beside, spring));
-        beside.into_iter().flat_map(springs)
-    };
-    let forces = move |law| axial_forces().flat_map(move |force| rest().map(move |rest| (law, force, rest)));
-    let all = excitations.flat_map(move |&(_, excitation)| {
-        laws()
-            .flat_map(forces)
-            .filter_map(move |(law, axial_force, (beside, spring))| {
-                let linear = matches!(law.0, "Linearised" | "Bonded");
-                let refused = linear && beside != Beside::Nothing
-                    || axial_force.0 == "FromDeflection" && beside == Beside::Friction
-                    || spring == MODES && (axial_force.0 != "None" || beside == Beside::Friction);
-                (!refused).then_some(Choices {
-                    excitation,
-                    law: law.1,
-                    axial_force: axial_force.1,
-                    beside,
-                    spring,
-                    tolerance: 0.0,
-                })
-            })
-    });
-    let tolerances = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10].into_iter().cycle();
-    all.zip(tolerances)
-        .map(|(choices, tolerance)| Choices { tolerance, ..choices })
+fn all() -> Vec<Scene> {
+    let beside: [fn(&mut Scene); 3] = [
+        |_| (),
+        |scene| scene.effects.friction = FrictionKind::Coulomb,
+        |scene| scene.effects.second_contact = true,
+    ];
+    let mut tolerances = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10].into_iter().cycle();
+    let mut scenes = Vec::new();
+    for &(_, excitation) in ExcitationKind::CHOICES {
+        for &(_, law) in ContactLawKind::CHOICES {
+            for &(_, axial_force) in AxialForceKind::CHOICES {
+                for (change, spring) in beside.iter().flat_map(|change| SPRINGS.map(|spring| (change, spring))) {
+                    let mut scene = run();
+                    let set = |scene: &mut Scene, parameter, choice| scene.set_enumeration(parameter, choice).unwrap();
+                    set(&mut scene, EnumerationParameter::EffectsExcitation, excitation);
+                    set(&mut scene, EnumerationParameter::EffectsContactLaw, law);
+                    set(&mut scene, EnumerationParameter::EffectsAxialForce, axial_force);
+                    scene
+                        .set_string(StringParameter::BeamFile, spring, Path::new("scenes"))
+                        .unwrap();
+                    change(&mut scene);
+                    if Simulation::new(&scene, &Inputs::default(), 0.0).is_ok() {
+                        scene.solver.tolerance = tolerances.next().unwrap();
+                        scenes.push(scene);
+                    }
+                }
+            }
+        }
+    }
+    scenes
+}
+
+/// What all of them have.
+fn run() -> Scene {
+    let mut scene = Scene::default();
+    (scene.effects.energy, scene.effects.extremes, scene.effects.chatter) = (true, true, true);
+    (scene.excitation.amplitude, scene.excitation.frequency) = (800.0, 300.0);
+    (scene.excitation.end_frequency, scene.excitation.duration) = (3000.0, 1e-3);
+    scene.excitation.spectral_density = 40.0;
+    (scene.second.gap, scene.tip.contact_height) = (5e-5, 1e-3);
+    (scene.contact.overtravel, scene.beam.stiffness_damping) = (1e-4, 2e-6);
+    scene
 }
 
 /// Sets parameters, and initialises.
-fn begin(contact: &Instance, choices: &Choices) {
-    let set = |status| assert_eq!(status, fmi2OK, "{choices:?}: {:?}", contact.messages());
-    set(contact.setup(Some(choices.tolerance), 0.0, Some(1.0)));
-    for (name, value) in [
-        ("effects.excitation", choices.excitation),
-        ("effects.contactLaw", choices.law),
-        ("effects.axialForce", choices.axial_force),
-        (
-            "effects.friction",
-            if choices.beside == Beside::Friction { 2 } else { 1 },
-        ),
-    ] {
-        set(contact.set_integer(name, value));
-    }
-    for name in ["effects.energy", "effects.extremes", "effects.chatter"] {
-        set(contact.set_boolean(name, true));
-    }
-    set(contact.set_boolean("effects.secondContact", choices.beside == Beside::SecondContact));
-    let names = [
-        "excitation.amplitude",
-        "excitation.frequency",
-        "excitation.endFrequency",
-        "excitation.duration",
-        "excitation.spectralDensity",
-        "second.gap",
-        "tip.contactHeight",
-        "contact.overtravel",
-        "beam.stiffnessDamping",
-    ];
-    set(contact.set_reals(names, [800.0, 300.0, 3000.0, 1e-3, 40.0, 5e-5, 1e-3, 1e-4, 2e-6]));
-    if !choices.spring.is_empty() {
-        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/springs/");
-        set(contact.set_string("beam.file", &format!("{folder}{}", choices.spring)));
-    }
-    set(contact.enter_initialization_mode());
+fn begin(contact: &Instance, scene: &Scene) {
+    let tolerance = Some(scene.solver.tolerance);
+    assert_eq!(contact.setup(tolerance, 0.0, Some(1.0)), fmi2OK);
+    contact.set_scene(scene);
+    assert_eq!(contact.enter_initialization_mode(), fmi2OK);
     assert!(contact.real("preload.force").is_finite());
-    set(contact.exit_initialization_mode());
+    assert_eq!(contact.exit_initialization_mode(), fmi2OK, "{:?}", contact.messages());
 }
 
 /// Steps of all sizes with inputs that are held, jump, or change linearly; every output and its derivative is read.
-fn steps(contact: &Instance, choices: &Choices, mut time: f64) {
+fn steps(contact: &Instance, mut time: f64) {
     for n in 0..48 {
         let size = [1e-6, 1e-6, 1e-6, 2.5e-5, 1e-5, 1e-5][n % 6];
         if n % 12 < 6 {
@@ -134,7 +105,7 @@ fn steps(contact: &Instance, choices: &Choices, mut time: f64) {
             assert_eq!(contact.set_rates(["base.acceleration"], [1], [1e6]), fmi2OK);
         }
         let status = contact.step(time, size);
-        assert_eq!(status, fmi2OK, "{choices:?} at {time}: {:?}", contact.messages());
+        assert_eq!(status, fmi2OK, "at {time}: {:?}", contact.messages());
         time += size;
         let outputs = [
             "contact.force",
@@ -162,25 +133,25 @@ fn save_and_restore(contact: &Instance) {
 
 /// The life of an instance that logs all: run, saved, restored, run on; reset, restored as it was, run on; failed, reset, run
 /// anew.
-fn live(choices: &Choices) {
+fn live(scene: &Scene) {
     let contact = Instance::with(&Arguments {
         logging_on: true,
         ..Arguments::default()
     });
     let logging = unsafe { fmi2SetDebugLogging(contact.component, fmi2True, 0, ptr::null()) };
     assert_eq!(logging, fmi2OK);
-    begin(&contact, choices);
-    steps(&contact, choices, 0.0);
+    begin(&contact, scene);
+    steps(&contact, 0.0);
     save_and_restore(&contact);
     let state = contact.save();
     let time = contact.last_successful_time().1;
-    steps(&contact, choices, time);
+    steps(&contact, time);
     assert_eq!(contact.reset(), fmi2OK);
     assert_eq!(contact.restore(state), fmi2OK);
-    steps(&contact, choices, time);
+    steps(&contact, time);
     assert_eq!(contact.step(0.0, -1.0), fmi2Error);
     assert_eq!(contact.reset(), fmi2OK);
-    begin(&contact, choices);
+    begin(&contact, scene);
 }
 
 /// Instances that carry a spring file, and files that are no springs, among them one that the parser would follow deep.
@@ -241,19 +212,22 @@ fn touched(body: &mut (dyn FnMut() + Send)) -> usize {
 
 #[test]
 fn whole_lives_take_less_than_the_bar() {
-    let most_of = |first: usize| {
-        let lives = all().skip(first).step_by(2);
-        lives
-            .map(|choices| (touched(&mut || live(&choices)), format!("{choices:?}")))
-            .max()
+    let scenes = all();
+    assert!(scenes.len() > 300, "{} can be combined", scenes.len());
+    let most_of = |scenes: &[Scene]| {
+        let lives = scenes
+            .iter()
+            .map(|scene| (touched(&mut || live(scene)), format!("{:?}", scene.effects)));
+        lives.max().unwrap()
     };
     // On both processors.
+    let (first, second) = scenes.split_at(scenes.len() / 2);
     let halves = thread::scope(|scope| {
-        let threads = [0, 1].map(|first| scope.spawn(move || most_of(first)));
-        threads.map(|half| half.join().unwrap().unwrap())
+        let other = scope.spawn(|| most_of(second));
+        [most_of(first), other.join().unwrap()]
     });
     let files = (touched(&mut read_files), "files".to_owned());
-    let (most, choices) = halves.into_iter().chain([files]).max().unwrap();
-    println!("{most} bytes at most, by {choices}");
-    assert!(most < BAR, "{most} bytes by {choices}");
+    let (most, what) = halves.into_iter().chain([files]).max().unwrap();
+    println!("{most} bytes at most, by {what}");
+    assert!(most < BAR, "{most} bytes by {what}");
 }
