@@ -3,7 +3,7 @@
 
 use std::{fs, ptr};
 
-use relay_contact::fmi2::{fmi2Discard, fmi2Error, fmi2GetFMUstate, fmi2OK};
+use relay_contact::fmi2::{fmi2Discard, fmi2Error, fmi2GetFMUstate, fmi2OK, fmi2Status};
 use relay_contact::variables::ExcitationKind;
 use testing::allocator::Counting;
 use testing::instance::Instance;
@@ -11,33 +11,31 @@ use testing::instance::Instance;
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// With every choice of `effects.excitation`.
-#[test]
-fn a_communication_step_allocates_nothing() {
-    for &(_, excitation) in ExcitationKind::CHOICES {
-        check(excitation);
-    }
-}
-
-fn check(excitation: i32) {
-    let contact = Instance::new();
-    assert_eq!(contact.set_integer("effects.excitation", excitation), fmi2OK);
-    assert_eq!(contact.set_boolean("effects.energy", true), fmi2OK);
+/// Allocations in a thousand communication steps (s) under a square wave of acceleration (m/s2).
+fn allocations(contact: &Instance, size: f64, acceleration: f64) -> usize {
     contact.initialize();
     let before = Counting::calls();
     assert!(before > 0, "nothing is counted");
     for n in 0..1000 {
-        let time = f64::from(n) * 1e-5;
-        // A square wave of 204 g: the contact opens and bounces.
-        let acceleration = if n % 100 < 50 { 2000.0 } else { -2000.0 };
         let inputs = ["base.acceleration", "contact.current"];
-        assert_eq!(contact.set_reals(inputs, [acceleration, 0.1]), fmi2OK);
-        assert_eq!(contact.step(time, 1e-5), fmi2OK);
+        let base = if n % 100 < 50 { acceleration } else { -acceleration };
+        assert_eq!(contact.set_reals(inputs, [base, 0.1]), fmi2OK);
+        assert_eq!(contact.step(f64::from(n) * size, size), fmi2OK);
         assert!(contact.real("contact.force").is_finite() && contact.real("contact.resistance").is_finite());
     }
-    assert_eq!(Counting::calls(), before, "allocated in a step");
-    let opening = contact.real("contact.lastOpening");
-    assert!(opening > 0.0, "the contact never opened: events are not covered");
+    Counting::calls() - before
+}
+
+/// With every choice of `effects.excitation`, while the contact opens and bounces.
+#[test]
+fn a_communication_step_allocates_nothing() {
+    for &(name, excitation) in ExcitationKind::CHOICES {
+        let contact = Instance::new();
+        assert_eq!(contact.set_integer("effects.excitation", excitation), fmi2OK);
+        assert_eq!(contact.set_boolean("effects.energy", true), fmi2OK);
+        assert_eq!(allocations(&contact, 1e-5, 2000.0), 0, "{name}");
+        assert!(contact.real("contact.lastOpening") > 0.0, "events are not covered");
+    }
 }
 
 /// Exact steps ahead, at communication points, and back to one where the input changes.
@@ -49,20 +47,20 @@ fn an_exact_step_allocates_nothing() {
     for watched in ["effects.extremes", "effects.chatter"] {
         assert_eq!(contact.set_boolean(watched, false), fmi2OK);
     }
-    contact.initialize();
-    let before = Counting::calls();
-    for n in 0..1000 {
-        let acceleration = if n % 100 < 50 { 20.0 } else { -20.0 };
-        assert_eq!(contact.set_real("base.acceleration", acceleration), fmi2OK);
-        assert_eq!(contact.step(f64::from(n) * 1e-6, 1e-6), fmi2OK);
-        assert!(contact.real("contact.force").is_finite());
-    }
-    assert_eq!(Counting::calls(), before, "allocated in a step");
+    assert_eq!(allocations(&contact, 1e-6, 20.0), 0);
     assert!(contact.integer("solver.steps") < 500, "no step went ahead");
 }
 
 /// Memory of which a simulation takes more, and a call that sets or reads less, bytes.
 const LITTLE: usize = 1 << 16;
+
+/// The status of a call that is refused more than so many bytes at a time.
+fn without_memory(bytes: usize, call: impl FnOnce() -> fmi2Status) -> fmi2Status {
+    Counting::refuse_above(bytes);
+    let status = call();
+    Counting::refuse_above(usize::MAX);
+    status
+}
 
 /// The caches of a simulation take about a megabyte.
 #[test]
@@ -70,11 +68,8 @@ fn an_initialisation_without_memory_is_an_error_that_a_reset_heals() {
     let contact = Instance::new();
     for _ in 0..2 {
         assert_eq!(contact.enter_initialization_mode(), fmi2OK);
-        Counting::refuse_above(LITTLE);
-        let status = contact.exit_initialization_mode();
-        Counting::refuse_above(usize::MAX);
         contact.answers(
-            status,
+            without_memory(LITTLE, || contact.exit_initialization_mode()),
             fmi2Error,
             &["fmi2ExitInitializationMode: out of memory: ", "bytes are needed"],
         );
@@ -90,9 +85,7 @@ fn a_state_without_memory_is_an_error() {
     let contact = Instance::initialized();
     let mut state = ptr::null_mut();
     // A simulation's motion alone has some 6 kB: two states of 128 modes.
-    Counting::refuse_above(4000);
-    let status = unsafe { fmi2GetFMUstate(contact.component, &raw mut state) };
-    Counting::refuse_above(usize::MAX);
+    let status = without_memory(4000, || unsafe { fmi2GetFMUstate(contact.component, &raw mut state) });
     contact.answers(status, fmi2Error, &["fmi2GetFMUstate: out of memory: "]);
     assert!(state.is_null());
     assert_eq!(contact.reset(), fmi2OK);
@@ -100,11 +93,8 @@ fn a_state_without_memory_is_an_error() {
     // What begins like a state, and is longer than any.
     let mut bytes = contact.to_bytes(contact.save());
     bytes.resize(1 << 26, 0);
-    Counting::refuse_above(LITTLE);
-    let (status, _) = contact.from_bytes(&bytes);
-    Counting::refuse_above(usize::MAX);
     contact.answers(
-        status,
+        without_memory(LITTLE, || contact.from_bytes(&bytes).0),
         fmi2Error,
         &["is not a saved state: it has 67108864 bytes, allowed are 1048576"],
     );
@@ -115,11 +105,8 @@ fn a_file_for_which_there_is_no_memory_is_discarded() {
     let contact = Instance::new();
     let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/large-spring.toml");
     fs::write(file, format!("# {}", "a".repeat(900_000))).expect("a file");
-    Counting::refuse_above(LITTLE);
-    let status = contact.set_string("beam.file", file);
-    Counting::refuse_above(usize::MAX);
     contact.answers(
-        status,
+        without_memory(LITTLE, || contact.set_string("beam.file", file)),
         fmi2Discard,
         &["large-spring.toml: cannot be read: out of memory"],
     );

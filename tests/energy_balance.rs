@@ -186,10 +186,6 @@ fn the_balance_is_that_of_all_works_and_losses() {
     for case in cases() {
         let (sum, stored, balance) = run(&case, 1e-8, 1e-7);
         let rest = sum.put_in - stored - sum.dissipated - balance;
-        println!(
-            "{}: rest {rest:.1e} J, allowed {:.1e} J, of {:.1e} J",
-            case.name, sum.uncertainty, sum.turnover
-        );
         // What remains is the error of the trapezoidal rule, and rounding.
         assert!(
             rest.abs() < sum.uncertainty + 1e-12 * sum.turnover,
@@ -212,11 +208,6 @@ fn the_balance_stays_below_the_tolerance() {
             for size in [1e-4, 1e-5] {
                 let (sum, _, balance) = run(&case, tolerance, size);
                 let allowed = tolerance * sum.force_scale * sum.way;
-                println!(
-                    "{}, {tolerance:e}, {size:e} s: {balance:.1e} J, {:.1e} of what is allowed",
-                    case.name,
-                    balance / allowed
-                );
                 assert!(
                     balance.abs() < allowed,
                     "{}, {tolerance:e}, {size:e} s: {balance:e} J, allowed {allowed:e} J",
