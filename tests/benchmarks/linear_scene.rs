@@ -134,7 +134,6 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                 }
                 assert_eq!(single.integer(IntegerOutput::SolverSteps), 600);
                 let steps = inside.integer(IntegerOutput::SolverSteps);
-                println!("{law:?}, {tolerance:e}, {size} s: {steps} steps");
                 assert!(steps < 300, "{law:?}, {tolerance:e}, {size} s: {steps}");
             }
         }
@@ -259,7 +258,6 @@ fn every_damping_and_load_against_the_matrix_exponential() {
             // At the resonance, which without damping has no steady motion.
             scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency();
             let worst = error_against_the_exponential(&scene);
-            println!("{damping:?}, {modes} modes, stiffness x {factor}, tip {mass}: {worst:.1e}");
             assert!(worst < 1e-12, "{damping:?} {modes} {factor} {mass}: {worst:e}");
         }
     }
@@ -284,7 +282,6 @@ fn exact_steps_hold_through_critical_damping() {
             (0.0, 0.0, critical * (1.0 + off) / contact),
         ] {
             let worst = error_against_the_exponential(&damped(ContactLawKind::Bonded, 1, damping));
-            println!("{off:e} {damping:?}: {worst:.1e}");
             assert!(worst < 1e-12, "{off:e} {damping:?}: {worst:e}");
         }
     }
@@ -315,7 +312,6 @@ fn one_long_step_is_many_short_ones() {
                 worst =
                     worst.max((one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale());
             }
-            println!("{damping:?}, {modes} modes: {worst:.1e}");
             assert_eq!(
                 (one.state.steps, many.state.steps),
                 (5, 500),

@@ -129,22 +129,16 @@ fn a_failure_leaves_what_was_done_before() {
 }
 
 #[test]
-fn times_that_go_back_fail_as_a_step() {
+fn times_that_go_back_fail_as_a_step_and_few_do_nothing() {
     for times in [[0.0, -1e-5], [0.0, f64::NAN], [0.0, f64::INFINITY], [1.0, 2.0]] {
-        let fmu = started();
-        let (status, rows) = follow(&fmu, &times, &[[0.0; 2]; 2]);
-        assert!(status > fmi2OK, "{times:?}");
-        assert!(rows[0][0].is_nan());
+        let (status, rows) = follow(&started(), &times, &[[0.0; 2]; 2]);
+        assert!(status > fmi2OK && rows[0][0].is_nan(), "{times:?}");
     }
-}
-
-#[test]
-fn few_times_do_nothing() {
+    let fmu = started();
     for times in [&[][..], &[0.0]] {
-        let fmu = started();
         assert_eq!(follow(&fmu, times, &vec![[0.0; 2]; times.len()]).0, fmi2OK);
-        assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
     }
+    assert_eq!(fmu.step(0.0, 1e-5), fmi2OK);
 }
 
 #[test]

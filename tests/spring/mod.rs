@@ -94,7 +94,6 @@ fn segments_of_the_uniform_section_are_the_uniform_spring() {
                 close(format_args!("{axial:?} {shares:?}"), found, expected, 1e-10);
             }
             let difference = largest_difference(&forces(&scene, 2e-5, 200), &expected);
-            println!("{axial:?} {shares:?}: {:e}", difference / largest);
             assert!(difference < 1e-10 * largest, "{axial:?} {shares:?}: {difference:e}");
         }
     }

@@ -71,7 +71,6 @@ fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
         largest_difference(&forces(&scene, 1e-4, 100), &expected) / swing
     };
     let errors = [2, 4, 8, 16].map(error);
-    println!("{errors:?}");
     assert!(errors[3] < 1e-4 && errors.is_sorted_by(|a, b| a > b), "{errors:?}");
 }
 
