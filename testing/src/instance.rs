@@ -189,27 +189,25 @@ impl Instance {
 
     /// Sets the inputs with their derivatives.
     pub fn set_inputs(&self, inputs: &Inputs) {
-        for (name, value, rate) in [
-            (
-                "base.acceleration",
-                inputs.base_acceleration,
-                inputs.base_acceleration_rate,
-            ),
-            (
-                "support.displacement",
-                inputs.support_displacement,
-                inputs.support_displacement_rate,
-            ),
-            (
-                "second.displacement",
-                inputs.second_displacement,
-                inputs.second_displacement_rate,
-            ),
-            ("contact.current", inputs.contact_current, inputs.contact_current_rate),
-        ] {
-            assert_eq!(self.set_real(name, value), fmi2OK, "{:?}", self.log);
-            assert_eq!(self.set_rates([name], [1], [rate]), fmi2OK, "{:?}", self.log);
-        }
+        let names = [
+            "base.acceleration",
+            "support.displacement",
+            "second.displacement",
+            "pusher.displacement",
+            "contact.current",
+            "coil.relativeCurrent",
+        ];
+        let courses = [
+            (inputs.base_acceleration, inputs.base_acceleration_rate),
+            (inputs.support_displacement, inputs.support_displacement_rate),
+            (inputs.second_displacement, inputs.second_displacement_rate),
+            (inputs.pusher_displacement, inputs.pusher_displacement_rate),
+            (inputs.contact_current, inputs.contact_current_rate),
+            (inputs.coil_relative_current, inputs.coil_relative_current_rate),
+        ];
+        let (values, rates) = (courses.map(|(value, _)| value), courses.map(|(_, rate)| rate));
+        assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
+        assert_eq!(self.set_rates(names, [1; 6], rates), fmi2OK, "{:?}", self.log);
     }
 
     /// `fmi2SetRealInputDerivatives`, of these orders.

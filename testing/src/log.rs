@@ -46,14 +46,25 @@ unsafe extern "C" fn logger(
 
 /// Callbacks that write to `log`.
 pub fn callbacks(log: &Log) -> fmi2CallbackFunctions {
-    type Fixed = unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
+    calling(Some(logger), None, ptr::from_ref(log).cast_mut().cast())
+}
+
+/// A log callback without its variable arguments.
+pub type Logger = unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
+
+/// Callbacks with this environment.
+pub fn calling(
+    logger: Option<Logger>,
+    finished: fmi2StepFinished,
+    environment: fmi2ComponentEnvironment,
+) -> fmi2CallbackFunctions {
     fmi2CallbackFunctions {
         // Stable Rust cannot define a variadic function; the C calling conventions of the platforms we test on pass the
         // fixed arguments of one as those of this function.
-        logger: unsafe { std::mem::transmute::<Fixed, fmi2CallbackLogger>(logger) },
+        logger: unsafe { std::mem::transmute::<Option<Logger>, fmi2CallbackLogger>(logger) },
         allocateMemory: None,
         freeMemory: None,
-        stepFinished: None,
-        componentEnvironment: ptr::from_ref(log).cast_mut().cast(),
+        stepFinished: finished,
+        componentEnvironment: environment,
     }
 }

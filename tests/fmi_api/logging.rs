@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::fmi2::*;
 use testing::instance::{Arguments, Instance};
+use testing::log::calling;
 
 fn choose(fmu: &Instance, on: fmi2Boolean, categories: &[&CStr]) -> fmi2Status {
     let pointers: Vec<_> = categories.iter().map(|category| category.as_ptr()).collect();
@@ -153,17 +154,9 @@ unsafe extern "C" fn meddle(
 
 #[test]
 fn a_logger_that_calls_back_is_refused_and_harms_nothing() {
-    type Fixed = unsafe extern "C" fn(fmi2ComponentEnvironment, fmi2String, fmi2Status, fmi2String, fmi2String);
     let mut component: fmi2Component = ptr::null_mut();
     let place = &raw mut component;
-    let callbacks = fmi2CallbackFunctions {
-        // As in `testing::log`.
-        logger: unsafe { std::mem::transmute::<Fixed, fmi2CallbackLogger>(meddle) },
-        allocateMemory: None,
-        freeMemory: None,
-        stepFinished: None,
-        componentEnvironment: place.cast(),
-    };
+    let callbacks = calling(Some(meddle), None, place.cast());
     let logging = Arguments {
         logging_on: true,
         ..Arguments::default()
@@ -194,13 +187,7 @@ unsafe extern "C" fn finished(environment: fmi2ComponentEnvironment, status: fmi
 fn an_importer_that_waits_for_the_end_of_a_step_is_told_of_it() {
     let mut kept: (fmi2Component, Vec<f64>) = (ptr::null_mut(), Vec::new());
     let place = &raw mut kept;
-    let callbacks = fmi2CallbackFunctions {
-        logger: None,
-        allocateMemory: None,
-        freeMemory: None,
-        stepFinished: Some(finished),
-        componentEnvironment: place.cast(),
-    };
+    let callbacks = calling(None, Some(finished), place.cast());
     let made = Arguments::default().instantiate(fmi2Instantiate, Some(&callbacks));
     unsafe {
         (*place).0 = made;

@@ -47,7 +47,7 @@ fn an_array_that_is_null_misaligned_or_endless_is_named() {
 #[test]
 fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
     // In the words of a scene file, which `tests/scene_file.rs` looks at.
-    let cases: [(&str, f64, &[&str]); 3] = [
+    let reals: [(&str, f64, &[&str]); 3] = [
         ("beam.width", 1e300, &["beam.width = 1e300 m", "0.0001 to 1"]),
         ("beam.width", -5e-324, &["beam.width = -5e-324 m"]),
         (
@@ -56,22 +56,16 @@ fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
             &["base.acceleration = -inf m/s2"],
         ),
     ];
-    for (name, value, parts) in cases {
+    for (name, value, parts) in reals {
         let fmu = Instance::new();
         fmu.answers(fmu.set_real(name, value), fmi2Discard, parts);
     }
-    let cases: [(&str, i32, &[&str]); 2] = [
-        (
-            "effects.axialForce",
-            9,
-            &["effects.axialForce = 9", "FromPreload", "Prescribed"],
-        ),
-        ("solver.modes", i32::MAX, &["solver.modes = 2147483647", "0 to"]),
-    ];
-    for (name, value, parts) in cases {
-        let fmu = Instance::initializing();
-        fmu.answers(fmu.set_integer(name, value), fmi2Discard, parts);
-    }
+    let fmu = Instance::initializing();
+    let (modes, kind) = ("solver.modes", "effects.axialForce");
+    let parts = ["effects.axialForce = 9", "FromPreload", "Prescribed"];
+    fmu.answers(fmu.set_integer(kind, 9), fmi2Discard, &parts);
+    let parts = ["solver.modes = 2147483647", "0 to"];
+    fmu.answers(fmu.set_integer(modes, i32::MAX), fmi2Discard, &parts);
 }
 
 #[test]
