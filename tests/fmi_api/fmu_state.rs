@@ -8,11 +8,12 @@ use testing::kinds::{KINDS, Kind};
 fn shaken(amplitude: f64) -> Instance {
     let fmu = Instance::new();
     fmu.shake(amplitude);
+    assert_eq!(fmu.set_boolean("effects.energy", true), fmi2OK);
     fmu.initialize();
     fmu
 }
 
-const OUTPUTS: [&str; 11] = [
+const OUTPUTS: [&str; 12] = [
     "contact.force",
     "contact.indentation",
     "tip.velocity",
@@ -24,10 +25,11 @@ const OUTPUTS: [&str; 11] = [
     "parallel.force",
     "pusher.force",
     "armature.displacement",
+    "energy.balance",
 ];
 
 /// The bits of the outputs over `count` steps of `size` seconds from `start` on, with inputs that change now and then.
-pub fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 11]> {
+pub fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 12]> {
     (start..start + count)
         .map(|k| {
             assert_eq!(fmu.set_real("base.acceleration", f64::from(k / 37)), fmi2OK);
