@@ -1,11 +1,7 @@
 """The component in place of the published specimen: at rest, and in steady vibration."""
 
-import os
-from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import cache
-from typing import TypeVar
 
 import numpy as np
 
@@ -23,15 +19,6 @@ SOON = 10  # periods after a sudden start
 FINE: Values = {"solver.tolerance": 1e-9}
 """Far below the digits shown."""
 PRESTRESSED: Values = {"effects.axialForce": "FromPreload"}
-
-Task = TypeVar("Task")
-Result = TypeVar("Result")
-
-
-def in_parallel(function: Callable[[Task], Result], tasks: Iterable[Task]) -> list[Result]:
-    """Return the results of tasks that all cores share."""
-    with ProcessPoolExecutor(max_workers=os.cpu_count()) as pool:
-        return list(pool.map(function, tasks, chunksize=4))
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from functools import cached_property
 
 import numpy as np
 
-from relay_contact import Value
+from relay_contact import Value, side_by_side
 from report import published as paper
-from report.bench import PRESTRESSED, Period, bench, damped, in_parallel, specimen
+from report.bench import PRESTRESSED, Bench, bench, damped, specimen
 from report.figure import Curve
 from report.published import ACCELERATION, BEST, FREQUENCIES, RATIOS
 from report.spring import Materials, Spring, elastic_reading
@@ -37,11 +37,6 @@ def deviations(least: float, greatest: float) -> tuple[float, float]:
     return 100 * (found[0] / measured[0] - 1), 100 * (found[1] / measured[1] - 1)
 
 
-def shaken(task: tuple[dict[str, Value], float]) -> Period:
-    """Return steady vibration of a specimen at a frequency (Hz)."""
-    return bench().vibrate(*task)
-
-
 class Publication:
     """What the component has of the publication."""
 
@@ -57,7 +52,8 @@ class Publication:
             ("beam.stiffnessDamping", "contact.damping"), paper.BETAS[3]
         )
         tasks = [(specimen(self.component, ratio), frequency) for ratio, frequency in keys]
-        runs = in_parallel(shaken, tasks + [(literal, frequency) for frequency in FREQUENCIES])
+        tasks += [(literal, frequency) for frequency in FREQUENCIES]
+        runs = side_by_side(lambda task: Bench(self.component).vibrate(*task), tasks)
         self.runs = dict(zip(keys, runs, strict=False))
         self.literal = runs[len(keys) :]
 
