@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from relay_contact import Component, Values
+from relay_contact import Component, Values, side_by_side
 from relay_contact.component import sine
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.excitation import Shock, Sine
@@ -15,7 +15,7 @@ from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.trials import Piece, Specimen, sine_threshold, steady, sweep
-from report.bench import in_parallel, specimen
+from report.bench import specimen
 from report.figure import Curve, Figure
 from report.published import FORCE, PEAKS
 from report.spring import Spring
@@ -115,12 +115,6 @@ def thresholds(frequency: float) -> Thresholds:
     return Thresholds(frequency, guess, first, interrupts, sudden)
 
 
-def level(task: tuple[Sine, list[float]]) -> list[tuple[Lengths, list[float]]]:
-    """Run a level of a standard at frequencies (Hz)."""
-    own = subject()
-    return sweep(own, task[0], np.array(task[1]), [own.response])
-
-
 def verdict(margin: float, uncertainty: float) -> str:
     """Return the verdict of a margin that is known to a part of it."""
     return "passed" if margin > 1 + uncertainty else "failed" if margin < 1 - uncertainty else "undecided"
@@ -131,9 +125,9 @@ def seen(points: list[Thresholds]) -> tuple[str, list[tuple[Sine, float, float]]
     rows, margins, uncertainty = [], [], total(uncertainties())
     tasks = [(test, [each for each in points if test.band[0] <= each.frequency <= test.band[1]])
              for test in levels().values()]  # fmt: skip
-    results = in_parallel(level, [(test, [each.frequency for each in covered]) for test, covered in tasks])
-    for name, (test, covered), outcomes in zip(levels(), tasks, results, strict=True):
+    for name, (test, covered) in zip(levels(), tasks, strict=True):
         frequencies = np.array([each.frequency for each in covered])
+        outcomes = sweep(subject(), test, frequencies, [subject().response])
         factors = np.array([each.interrupts for each in covered]) * G / test.amplitude(frequencies)
         lengths = np.array([max(failed.values(), default=0.0) for failed, _ in outcomes])
         forces = np.array([left[0] for _, left in outcomes]) / rest()
@@ -198,11 +192,11 @@ def found(quick: bool) -> list[Thresholds]:
     """Return thresholds at equal ratios of frequency and at the ends of the levels, and more where they are lowest."""
     ends = [frequency for test in levels().values() for frequency in test.band]
     frequencies = sorted({round(each, 6) for each in [*np.geomspace(*RANGE, 12 if quick else 80), *ends]})
-    points = in_parallel(thresholds, frequencies)
+    points = side_by_side(thresholds, frequencies)
     at = min(range(len(points)), key=lambda place: points[place].opens)
     around = frequencies[max(at - 1, 0)], frequencies[min(at + 1, len(points) - 1)]
     between = [each for each in np.geomspace(*around, FINE + 2)[1:-1].round(6) if each not in frequencies]
-    return sorted(points + in_parallel(thresholds, between), key=lambda each: each.frequency)
+    return sorted(points + side_by_side(thresholds, between), key=lambda each: each.frequency)
 
 
 def figure(points: list[Thresholds]) -> Figure:

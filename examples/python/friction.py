@@ -13,6 +13,7 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.linalg import expm
 from scipy.optimize import brentq
 from tqdm import tqdm
 
@@ -55,20 +56,12 @@ def lowest_frequency(start: dict[str, float], contact: float, turning: float) ->
     length = start["beam.length"]
 
     def determinant(z: float) -> float:
-        """Moment and force at the tip of w = A (cosh - cos)(g x) + B (sinh - sin)(g x), g = z / L."""
-        g = z / length
-        squared = g**4 * bending / line
-        cos, sin, cosh, sinh = math.cos(z), math.sin(z), math.cosh(z), math.sinh(z)
-        held = contact - start["tip.mass"] * squared
-        moment = [
-            bending * g * g * (cosh + cos) + turning * g * (sinh + sin),
-            bending * g * g * (sinh + sin) + turning * g * (cosh - cos),
-        ]
-        shear = [
-            bending * g**3 * (sinh - sin) - held * (cosh - cos),
-            bending * g**3 * (cosh + cos) - held * (sinh - sin),
-        ]
-        return moment[0] * shear[1] - moment[1] * shear[0]
+        """Moment and force at the tip for unit curvature and shear at the clamp, where w'''' = (z / L)^4 w."""
+        along = np.diag(np.ones(3), 1)
+        along[3, 0] = (z / length) ** 4
+        w, slope, curvature, shear = expm(along * length)[:, 2:]
+        held = contact - start["tip.mass"] * along[3, 0] * bending / line
+        return float(np.linalg.det([bending * curvature + turning * slope, bending * shear - held * w]))
 
     high = 0.1
     while determinant(high) * determinant(high + 0.01) > 0:
