@@ -6,7 +6,6 @@
 //! step every stage of every mode is linear in the contact forces at the stages, which leaves five equations for Newton.
 
 use nalgebra::{SMatrix, SVector};
-use relay_contact::reference::bracketed;
 use testing::scenes::largest_difference;
 
 use crate::integrator::Failure;
@@ -57,43 +56,22 @@ struct Tableau {
     a: Matrix,
 }
 
+/// The zeros of `P_5 - P_4`, of Legendre's polynomials, moved from `[-1, 1]` to `[0, 1]`.
+const NODES: [f64; STAGES] = [
+    0.057_104_196_114_517_68,
+    0.276_843_013_638_123_8,
+    0.583_590_432_368_916_8,
+    0.860_240_135_656_219_5,
+    1.0,
+];
+
 impl Tableau {
-    /// The nodes are the zeros of `P_5 - P_4` on `[-1, 1]`; the weights integrate the Lagrange polynomials of the nodes.
+    /// The weights integrate powers of time, up to the fourth.
     fn new() -> Self {
-        let legendre = |n: u32, x: f64| {
-            let (mut below, mut p) = (1.0, x);
-            for k in 1..n {
-                let k = f64::from(k);
-                (below, p) = (p, ((2.0 * k + 1.0) * x * p - k * below) / (k + 1.0));
-            }
-            p
-        };
-        let radau = |x: f64| legendre(5, x) - legendre(4, x);
-        let looks = 1000;
-        let at = |k: i32| -1.0 + 2.0 * f64::from(k) / f64::from(looks);
-        let inside = (0..looks - 1).filter_map(|k| bracketed(radau, at(k), at(k + 1)));
-        let mut nodes: Vec<_> = inside.map(|zero| f64::midpoint(1.0, zero)).collect();
-        nodes.push(1.0);
-        assert_eq!(
-            nodes.len(),
-            STAGES,
-            "P_5 - P_4 has four zeros inside and one at the end"
-        );
-        let c = Vector::from_column_slice(&nodes);
-        // Gauss with three points is exact for the Lagrange polynomials, which have degree four.
-        let offset = 0.5 * 0.6_f64.sqrt();
-        let gauss = [
-            (0.5 - offset, 5.0 / 18.0),
-            (0.5, 8.0 / 18.0),
-            (0.5 + offset, 5.0 / 18.0),
-        ];
-        let lagrange = |j: usize, x: f64| {
-            (0..STAGES)
-                .filter(|k| *k != j)
-                .map(|k| (x - c[k]) / (c[j] - c[k]))
-                .product::<f64>()
-        };
-        let a = Matrix::from_fn(|i, j| c[i] * gauss.iter().map(|(x, w)| w * lagrange(j, c[i] * x)).sum::<f64>());
+        let c = Vector::from(NODES);
+        let powers = Matrix::from_fn(|i, k| (0..k).fold(1.0, |power, _| power * c[i]));
+        let integrals = Matrix::from_fn(|i, k| powers[(i, k)] * c[i] / (k + 1) as f64);
+        let a = integrals * powers.try_inverse().expect("no node twice");
         Self { c, a }
     }
 }
