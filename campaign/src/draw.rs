@@ -67,7 +67,7 @@ fn anything(choices: &mut Choices, now: &Moment) -> Call {
         6 => Call::Renew,
         7 => get(choices, now),
         8 => {
-            let kind = any_kind(choices);
+            let kind = choices.one(&Kind::ALL);
             set(choices, now, kind)
         }
         9 | 10 => state(choices),
@@ -79,10 +79,6 @@ fn anything(choices: &mut Choices, now: &Moment) -> Call {
         16 => status(choices),
         _ => replay(choices, now),
     }
-}
-
-fn any_kind(choices: &mut Choices) -> Kind {
-    choices.one(&Kind::ALL)
 }
 
 /// A fault of the pointers, mostly none.

@@ -227,27 +227,3 @@ fn what_is_no_instance_is_refused_by_every_function_and_left_alone() {
     }
     assert_eq!(memory, [0x5a5a_5a5a_5a5a_5a5a; 64]);
 }
-
-#[test]
-fn a_step_past_the_stop_time_a_second_end_and_a_call_after_a_failed_step_are_errors() {
-    let setup = Call::SetupExperiment(None, 1.0, Some(1.0 + 2e-5));
-    let [enter, exit] = Call::INITIALISE;
-    let start = [setup, enter, exit, Call::step(1e-5)];
-    let cases: [&[Call]; 4] = [
-        &[
-            Call::step(2e-5),
-            Call::step(1e-5),
-            Call::get(Kind::Real, DESCRIPTION.outputs(Kind::Real)),
-        ],
-        &[Call::step(1e-5), Call::step(1e-9), Call::set_reals(vec![(0, 1.0)])],
-        &[Call::Terminate, Call::Terminate, Call::step(1e-5)],
-        &[Call::DoStep(Point::Off(-1.0), 1e-5), Call::step(1e-5), Call::Terminate],
-    ];
-    for case in cases {
-        let mut judge = Judge::new(&LIBRARY);
-        judge.run(start.iter().chain(case)).unwrap();
-        assert_eq!(judge.life.now.phase, Phase::Error, "{case:?}");
-        judge.run(&reset_and_run()).unwrap();
-        assert_eq!(judge.life.now.phase, Phase::StepComplete);
-    }
-}
