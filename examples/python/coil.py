@@ -23,6 +23,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 from tqdm import tqdm
 
 from common import parser, read_arguments, save
@@ -137,13 +138,11 @@ def main() -> None:
     found = [times(run) for run in runs]
     coil_most, pushed, pressed = (np.max(runs[0][name]) for name in ("coil.current", "pusher.force", "contact.force"))
     print(f"at most {1e3 * coil_most:.1f} mA in the coil, {pushed:.2f} N at the pusher, {pressed:.1f} N at the contact")
-    print("  step [µs]" + "".join(f"{name + ' [ms]':>22}" for name in found[0]))
-    for step, each in zip(steps, found, strict=True):
-        print(f"{step:11}" + "".join(f"{1e3 * value:22.4f}" for value in each.values()))
+    table = pd.DataFrame(found, index=pd.Index([1e-6 * step for step in steps], name="step"))
+    print(f"{(1e3 * table).to_string(float_format='{:.4f}'.format)}\nsteps in s, times in ms")
     paths = [given.out / name for name in ("coil.csv", "coil-steps.csv", "coil.png")]
     write_table(paths[0], ",".join(COLUMNS), np.column_stack(list(runs[0].values())), digits=17)
-    rows = [[1e-6 * step, *each.values()] for step, each in zip(steps, found, strict=True)]
-    write_table(paths[1], "step,operate,make.bounce,release,break.bounce", rows)
+    table.to_csv(paths[1], float_format="%.12g")
     draw(runs[0], found[0], paths[2])
     print(*paths, sep="\n")
 

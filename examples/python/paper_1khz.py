@@ -9,6 +9,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 
 from common import legend_beside, parser, read_arguments, save
 from relay_contact import Array, Component, Scene, run, write_table
@@ -49,15 +50,11 @@ def comparison(outputs: Outputs, period: int) -> str:
         ("minimum resistance (measured)", "mOhm", 1e3 * MEASURED_RESISTANCE[0], 1e3 * resistance.min()),
         ("maximum resistance (measured)", "mOhm", 1e3 * MEASURED_RESISTANCE[1], 1e3 * resistance.max()),
     ]
-    lines = [f"{'':30} {'unit':5} {'published':>10} {'simulated':>12} {'deviation':>10}"]
-    for name, unit, published, simulated in rows:
-        deviation = f"{100 * (simulated / published - 1):+.2f} %"
-        lines.append(f"{name:30} {unit:5} {published:10.6g} {simulated:12.6g} {deviation:>10}")
-    lines += [
-        "The section of the spring, its rivet mass, the contact radius and the damping are identified from the",
-        "first four rows, so these show that the model is consistent; the resistances follow by the power law.",
-    ]
-    return "\n".join(lines)
+    table = pd.DataFrame(rows, columns=["", "unit", "published", "simulated"])
+    table["deviation"] = (100 * (table["simulated"] / table["published"] - 1)).map("{:+.2f} %".format)
+    return f"""{table.to_string(index=False, float_format="{:.6g}".format)}
+The section of the spring, its rivet mass, the contact radius and the damping are identified from the
+first four rows, so these show that the model is consistent; the resistances follow by the power law."""
 
 
 def draw(outputs: Outputs, period: int, title: str, path: Path) -> None:
