@@ -5,10 +5,8 @@ A page on the result: docs/friction.md. The published frequencies are those of Z
 """
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -210,16 +208,11 @@ def draw_slip(axes: Axes, rows: Array) -> None:
     axes.set_title("Slip in a period, start values", fontsize="medium")
 
 
-def draw(path: Path, frequencies: Array, responses: Array, loop: Array, slips: Array) -> None:
-    """Draw all."""
+def draw(path: Path, *tables: Array) -> None:
+    """Draw frequencies, responses, the loop and the slip."""
     figure, panels = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
-    drawn: Iterable[tuple[Axes, Any, Array]] = zip(
-        panels.flat,
-        (draw_frequencies, draw_responses, draw_loop, draw_slip),
-        (frequencies, responses, loop, slips),
-        strict=True,
-    )
-    for letter, (axes, function, rows) in zip("abcd", drawn, strict=True):
+    functions = (draw_frequencies, draw_responses, draw_loop, draw_slip)
+    for letter, axes, function, rows in zip("abcd", panels.flat, functions, tables, strict=True):
         function(axes, rows)
         axes.set_title(letter, loc="left", fontweight="bold")
         axes.grid(alpha=0.3)
