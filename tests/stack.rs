@@ -15,8 +15,8 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
-    AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind, GUID, StringParameter,
-    guid_carrying,
+    AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, FrictionKind, GUID, PusherKind,
+    StringParameter, guid_carrying,
 };
 use testing::instance::{Arguments, Instance, vr};
 
@@ -37,34 +37,44 @@ const SPRINGS: [&str; 3] = ["", "springs/tapered-cube.toml", "springs/tapered-cu
 
 /// All that can be combined, with energy, extremes and interruptions, which take more, and with tolerances in turn.
 fn all() -> Vec<Scene> {
-    let beside: [fn(&mut Scene); 3] = [
-        |_| (),
-        |scene| scene.effects.friction = FrictionKind::Coulomb,
-        |scene| scene.effects.second_contact = true,
+    let with = |scene: &mut Scene, file, spring| scene.set_string(file, spring, Path::new("scenes")).unwrap();
+    let beside: [&dyn Fn(&mut Scene); 6] = [
+        &|_| (),
+        &|scene| scene.effects.friction = FrictionKind::Coulomb,
+        &|scene| scene.effects.second_contact = true,
+        &|scene| {
+            scene.effects.parallel_contact = true;
+            with(scene, StringParameter::BeamFile, "springs/forked.toml");
+        },
+        &|scene| scene.effects.pusher = PusherKind::Armature,
+        &|scene| {
+            (scene.effects.second_contact, scene.effects.pusher) = (true, PusherKind::Armature);
+            with(scene, StringParameter::FixedFile, "springs/reed-blade.toml");
+        },
     ];
     let mut tolerances = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10].into_iter().cycle();
-    let mut scenes = Vec::new();
+    let (mut scenes, mut taken) = (Vec::new(), [false; 6]);
     for &(_, excitation) in ExcitationKind::CHOICES {
         for &(_, law) in ContactLawKind::CHOICES {
             for &(_, axial_force) in AxialForceKind::CHOICES {
-                for (change, spring) in beside.iter().flat_map(|change| SPRINGS.map(|spring| (change, spring))) {
+                for (index, spring) in (0..beside.len()).flat_map(|index| SPRINGS.map(|spring| (index, spring))) {
                     let mut scene = run();
                     let set = |scene: &mut Scene, parameter, choice| scene.set_enumeration(parameter, choice).unwrap();
                     set(&mut scene, EnumerationParameter::EffectsExcitation, excitation);
                     set(&mut scene, EnumerationParameter::EffectsContactLaw, law);
                     set(&mut scene, EnumerationParameter::EffectsAxialForce, axial_force);
-                    scene
-                        .set_string(StringParameter::BeamFile, spring, Path::new("scenes"))
-                        .unwrap();
-                    change(&mut scene);
+                    with(&mut scene, StringParameter::BeamFile, spring);
+                    beside[index](&mut scene);
                     if Simulation::new(&scene, &Inputs::default(), 0.0).is_ok() {
                         scene.solver.tolerance = tolerances.next().unwrap();
+                        taken[index] = true;
                         scenes.push(scene);
                     }
                 }
             }
         }
     }
+    assert!(taken.iter().all(|taken| *taken), "{taken:?}");
     scenes
 }
 

@@ -97,7 +97,7 @@ pub const FREE_ROUNDING: f64 = 2e-14;
 // Newton's method.
 
 /// Largest difference that it leaves between a nodal force and that of the law, in errors allowed in a step, 1. Small
-/// compared with the error estimate. Pinned: × 1000, `tests/calibration.rs`.
+/// compared with the error estimate. Pinned: × 1000, `tests/promise.rs`.
 pub const NEWTON: f64 = 0.2;
 
 /// Iterations before a step is judged too long. Most solutions need one or two. Cost.
@@ -132,7 +132,8 @@ pub const UNSEEN: f64 = 1e-2;
 pub const SHORTEST_FLIGHT: f64 = 1e-3;
 
 /// Error allowed in the motion at an opening, and force that counts as zero there, or where a contact begins or ceases to slip, in
-/// errors allowed in a step, 1: the blow that follows makes it a hundred times larger. Pinned: × 100, `tests/calibration.rs`.
+/// errors allowed in a step, 1: the blow that follows makes it a hundred times larger. Pinned: × 100,
+/// `what_is_read_inside_the_integrators_steps_is_within_the_tolerance`.
 pub const AT_EVENT: f64 = 0.01;
 
 /// Length from which on a step is counted by the force that the deviation makes in it, s. A communication point is hardly ever nearer

@@ -5,6 +5,8 @@
     reason = "every index runs over the fixed size of the arrays"
 )]
 
+use bytemuck::Zeroable;
+
 use crate::integrator::constants::SMALL_PIVOT;
 use crate::math::nodal::{Nodal, add, others, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
@@ -14,12 +16,12 @@ pub(super) type Stacked<const S: usize, const L: usize> = [Nodal<S>; L];
 
 /// A square matrix by columns, of which the first `count` blocks are in use; once factorised, the multipliers of the
 /// elimination.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Zeroable)]
 pub(super) struct Equations<const S: usize, const L: usize> {
     pub(super) columns: [[Stacked<S, L>; S]; L],
     /// Rows exchanged with each other, block by block.
     exchanges: [[usize; S]; L],
-    count: usize,
+    pub(super) count: usize,
 }
 
 /// How many of `L` blocks are in use; of one or two it is known beforehand.

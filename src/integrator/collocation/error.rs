@@ -40,7 +40,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
     /// there.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
-    pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<S, L>, trial: &mut Trial<S>) {
+    pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, trial: &mut Trial<S>) {
         let Self {
             linked,
             step,

@@ -29,6 +29,9 @@ use crate::math::simd::{Arithmetic, Separate};
 use crate::model::Model;
 use crate::state::State;
 
+/// Unknown forces of which the equations stand on the stack; those of more would fill that of a small thread.
+pub(super) const FEW: usize = 3;
+
 /// A link whose force is unknown, and what follows it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Unknown {
@@ -119,14 +122,14 @@ pub struct Tangent {
 }
 
 /// The nodal forces of the unknown links, and the linearised laws with which an error estimate is made of them.
-pub(crate) struct Solution<const S: usize, const L: usize> {
+pub(crate) struct Solution<'a, const S: usize, const L: usize> {
     /// Forces as deviations from those of the preload, N.
     pub(crate) forces: Stacked<S, L>,
     /// Motion under them.
     pub(crate) motions: [NodalMotion<S>; L],
     pub(crate) iterations: u64,
     laws: Laws<S, L>,
-    factors: Equations<S, L>,
+    factors: &'a Equations<S, L>,
 }
 
 /// The laws at the nodes: derivatives by the own approach, its velocity, and the approach of the contact that rubs.
@@ -290,13 +293,13 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     /// or rounding; `None` if the iteration does not converge.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    pub(crate) fn solve<A: Arithmetic>(
+    pub(super) fn solve<'f, A: Arithmetic>(
         &self,
         free: &[NodalMotion<S>; L],
         mut forces: Stacked<S, L>,
         newton: f64,
-    ) -> Option<Solution<S, L>> {
-        let mut factors = Equations::new(self.unknowns.count);
+        factors: &'f mut Equations<S, L>,
+    ) -> Option<Solution<'f, S, L>> {
         let (mut factorised, mut before) = (false, 0.0);
         for iterations in 0..=ITERATIONS {
             let motions = self.under::<A>(free, &forces);
@@ -321,7 +324,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             if L > 1 && factorised && wrong <= STALE * before {
                 factors.solve::<A>(&mut residuals);
             } else {
-                self.equate::<A>(&laws, &mut factors);
+                self.equate::<A>(&laws, factors);
                 factors.factorise::<A>(&mut residuals)?;
                 factorised = true;
             }
@@ -361,7 +364,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     /// they make with forces as they are.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    pub(crate) fn wrong<A: Arithmetic>(&self, solution: &Solution<S, L>, own: &[NodalMotion<S>; L]) -> Wrong<S, L> {
+    pub(crate) fn wrong<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, own: &[NodalMotion<S>; L]) -> Wrong<S, L> {
         let mut forces = [[0.0; S]; L];
         for a in 0..in_use::<L>(self.unknowns.count) {
             forces[a] = solution.laws.change::<A>(a, |of| own[of]);
@@ -382,7 +385,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     /// infinite.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    pub(crate) fn tangent(&self, collocation: &Collocation<S>, solution: &Solution<S, L>, a: usize) -> Tangent {
+    pub(crate) fn tangent(&self, collocation: &Collocation<S>, solution: &Solution<'_, S, L>, a: usize) -> Tangent {
         let index = self.unknowns.get(a).link;
         let link = &self.model.links[index];
         let (mut stiffness, mut damping) = (

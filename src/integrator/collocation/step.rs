@@ -6,12 +6,12 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
 use crate::integrator::collocation::coefficients::{EndGroup, NodalMotion};
-use crate::integrator::collocation::elimination::{Stacked, in_use};
+use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
-use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknowns};
+use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
-use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
+use crate::link::MAX_PORTS;
 use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
@@ -41,21 +41,28 @@ pub fn compute<const S: usize>(
         unknowns,
     };
     match unknowns.count {
-        0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch)),
-        2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch)),
-        3 => compute_many::<S, 3>(&step, trial, scratch),
-        _ => compute_many::<S, MAX_UNKNOWNS>(&step, trial, scratch),
+        0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch, &mut Equations::new(1))),
+        2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch, &mut Equations::new(2))),
+        FEW => compute_many(&step, trial, scratch, &mut Equations::<S, FEW>::new(FEW)),
+        count => {
+            let mut equations = scratch.many.take()?;
+            equations.count = count;
+            let done = compute_many(&step, trial, scratch, &mut equations);
+            scratch.many = Some(equations);
+            done
+        }
     }
 }
 
-/// Of many unknowns, whose equations take room on the stack that others need not have.
+/// Of many unknowns, which take room on the stack that others need not have.
 #[inline(never)]
 fn compute_many<const S: usize, const L: usize>(
     step: &Step<S>,
     trial: &mut Trial<S>,
     scratch: &mut Scratch<S>,
+    equations: &mut Equations<S, L>,
 ) -> Option<()> {
-    compiled_for!(step.model.simd, A => step.compute::<L, A>(trial, scratch))
+    compiled_for!(step.model.simd, A => step.compute::<L, A>(trial, scratch, equations))
 }
 
 /// What a step is computed from.
@@ -70,10 +77,17 @@ struct Step<'a, const S: usize> {
 
 impl<const S: usize> Step<'_, S> {
     #[inline(always)]
-    fn compute<const L: usize, A: Arithmetic>(&self, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
+    fn compute<const L: usize, A: Arithmetic>(
+        &self,
+        trial: &mut Trial<S>,
+        scratch: &mut Scratch<S>,
+        equations: &mut Equations<S, L>,
+    ) -> Option<()> {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, .. } = self.prepared;
-        let Scratch { free, joined, axial } = scratch;
+        let Scratch {
+            free, joined, axial, ..
+        } = scratch;
         self.set_free_response::<A>(trial, free);
         self.guess::<A>(trial);
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
@@ -86,7 +100,7 @@ impl<const S: usize> Step<'_, S> {
                 None => true,
             };
             if self.unknowns.count > 0 {
-                let solution = self.solve::<L, A>(&linked, free, trial)?;
+                let solution = self.solve::<L, A>(&linked, free, trial, equations)?;
                 if settled {
                     self.judge::<L, A>(&linked, free, &solution, trial);
                     break;
@@ -110,7 +124,7 @@ impl<const S: usize> Step<'_, S> {
         &self,
         linked: &Linked<S, L>,
         free: &FreeResponse<S>,
-        solution: &Solution<S, L>,
+        solution: &Solution<'_, S, L>,
         trial: &mut Trial<S>,
     ) {
         let Self { model, state, .. } = *self;
@@ -241,12 +255,13 @@ impl<const S: usize> Step<'_, S> {
     /// Solves for the unknown forces from the guesses in the trial.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
-    fn solve<const L: usize, A: Arithmetic>(
+    fn solve<'e, const L: usize, A: Arithmetic>(
         &self,
         linked: &Linked<S, L>,
         free: &FreeResponse<S>,
         trial: &mut Trial<S>,
-    ) -> Option<Solution<S, L>> {
+        equations: &'e mut Equations<S, L>,
+    ) -> Option<Solution<'e, S, L>> {
         let Source::Laws(newton) = self.source else {
             return None;
         };
@@ -257,7 +272,7 @@ impl<const S: usize> Step<'_, S> {
             motions[a] = self.approach::<A>(unknown.link, &free.ports[self.model.links[unknown.link].port]);
             forces[a] = trial.links[unknown.link].forces;
         }
-        let solution = linked.solve::<A>(&motions, forces, newton)?;
+        let solution = linked.solve::<A>(&motions, forces, newton, equations)?;
         trial.iterations = solution.iterations;
         for a in 0..in_use::<L>(self.unknowns.count) {
             let unknown = self.unknowns.get(a);

@@ -1,11 +1,12 @@
 //! What a step is computed from, and a step computed but not yet accepted.
 
-use bytemuck::Zeroable;
+use bytemuck::{Zeroable, zeroed_box};
 
 use crate::beam::mode::ModeStates;
 use crate::integrator::collocation::coefficients::NodalMotion;
-use crate::integrator::collocation::newton::{Joined, Tangent};
-use crate::link::{MAX_LINKS, MAX_PORTS};
+use crate::integrator::collocation::elimination::Equations;
+use crate::integrator::collocation::newton::{FEW, Joined, Tangent};
+use crate::link::{MAX_LINKS, MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::Nodal;
 use crate::model::Model;
 
@@ -76,6 +77,8 @@ pub enum Source {
 pub struct Scratch<const S: usize> {
     pub(super) free: Box<FreeResponse<S>>,
     pub(super) joined: Joined<S>,
+    /// Equations of more than [`FEW`] unknown forces.
+    pub(super) many: Option<Box<Equations<S, MAX_UNKNOWNS>>>,
     pub(crate) axial: AxialLoads<S>,
 }
 
@@ -86,6 +89,7 @@ impl<const S: usize> Scratch<S> {
         Self {
             free: Box::default(),
             joined: Joined::new(model),
+            many: (model.links.len() > FEW).then(zeroed_box),
             axial: AxialLoads {
                 loads: on_modes(),
                 motion: on_modes(),
