@@ -44,9 +44,8 @@ fn disagreement((start, before, _): Read, (time, after, closed): Read, bonded: b
 
 /// Steps through a scene, with lengths of all kinds, for `duration` seconds.
 fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn(f64, f64) -> Inputs) {
-    let Ok(mut simulation) = Simulation::new(scene, &inputs(0.0, 1e-6), 0.0) else {
-        return;
-    };
+    let mut simulation =
+        Simulation::new(scene, &inputs(0.0, 1e-6), 0.0).unwrap_or_else(|error| panic!("{case}: {error}"));
     let bonded = scene.effects.contact_law == ContactLawKind::Bonded;
     let contacts = relays::contacts(scene);
     let read = |simulation: &Simulation| -> Vec<Read> {
@@ -81,9 +80,8 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
             _ => period * 10_f64.powf(-3.0 * rng.f64()),
         }
         .clamp(1e-9, 0.3 * duration);
-        if simulation.step(&inputs(time, size), time, size).is_err() {
-            return;
-        }
+        let done = simulation.step(&inputs(time, size), time, size);
+        done.unwrap_or_else(|error| panic!("{case}, step of {size:e} s: {error}"));
         let after = read(&simulation);
         for (before, after) in before.iter().zip(&after) {
             let what = disagreement(*before, *after, bonded);
