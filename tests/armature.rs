@@ -1,11 +1,11 @@
 //! The armature between magnet, return spring and stops: its two positions, what takes it from the core, and the energy on its
-//! way between the stops. Its release by a shock, which opens the contact, and its bounces are compared with another solution in
+//! way between the stops, by closed forms. Its bounces in a shock are compared with another solution in
 //! `tests/python/test_relay_parts.py`.
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{BooleanOutput, PusherKind, RealOutput};
+use relay_contact::variables::{BooleanOutput, ExcitationKind, PusherKind, RealOutput};
 
 /// An armature that feels all of its weight, and whose pusher meets the spring on the way to its core.
 fn relay() -> Scene {
@@ -99,9 +99,37 @@ fn a_slow_acceleration_releases_it_at_its_holding_force_over_its_mass() {
     assert!((release - 0.05).abs() < 5e-5, "{release}");
 }
 
-/// Between elastic stops the balance of the component is that of an armature alone, whose coil is switched on, which draws it to its
-/// core, and off, which lets it fall to its rest stop. The energies by formulas: hard case "Armature without damping anywhere" and
-/// `tests/python/test_relay_parts.py`.
+/// The whole: contact, pusher and core under a shock; held, and released.
+#[test]
+fn a_released_armature_opens_the_contact() {
+    let mut scene = relay();
+    // A magnet that draws it back from any place.
+    scene.armature.gap_constant = 5e-4;
+    scene.effects.excitation = ExcitationKind::HalfSine;
+    scene.excitation.duration = 2e-3;
+    let run = |amplitude: f64| {
+        let mut scene = scene.clone();
+        scene.excitation.amplitude = amplitude;
+        let mut simulation = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
+        for n in 0..2000 {
+            simulation.step(&coil(1.0), f64::from(n) * 1e-5, 1e-5).unwrap();
+        }
+        assert!(simulation.force_error() < 1e-5);
+        let released = simulation.real(RealOutput::ArmatureLastRelease) > 0.0;
+        let opened = simulation.real(RealOutput::ContactLastOpening) > 0.0;
+        let back = simulation.real(RealOutput::ContactForce) / simulation.model().preload().force;
+        (released, opened, back)
+    };
+    let (released, opened, _) = run(-100.0);
+    assert!(!released && !opened);
+    let (released, opened, back) = run(-3000.0);
+    assert!(released && opened);
+    close(back, 1.0, 1e-3);
+}
+
+/// Between elastic stops an armature alone keeps the sum of kinetic energy, that of its return spring and stops, and what the
+/// magnet stores over the gap, `F_h i^2 g / (1 + g / g_0)`: by the formulas, and by the balance of the component. Its coil is
+/// switched on, which draws it to its core, and off, which lets it fall to its rest stop.
 #[test]
 fn energy_is_kept_between_magnet_return_spring_and_stops() {
     let mut scene = alone();
@@ -113,14 +141,35 @@ fn energy_is_kept_between_magnet_return_spring_and_stops() {
     let current = 1.5_f64;
     let given = scene.armature;
     let mut simulation = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
+    let energy = |simulation: &Simulation, current: f64| {
+        let [place, velocity] =
+            [RealOutput::ArmatureDisplacement, RealOutput::ArmatureVelocity].map(|output| simulation.real(output));
+        let gap = given.core_position - place;
+        let way = place - given.rest_position;
+        let pulled = if gap > 0.0 {
+            gap / (1.0 + gap / given.gap_constant)
+        } else {
+            gap
+        };
+        let stops = [gap, way].map(|gap| 0.5 * given.stop_stiffness * gap.min(0.0).powi(2));
+        0.5 * given.mass * velocity * velocity
+            + given.return_force * way
+            + 0.5 * given.stiffness * way * way
+            + given.hold_force * current.powi(2) * pulled
+            + stops[0]
+            + stops[1]
+    };
     let (mut seated, mut rested, mut fastest) = (0, 0, 0.0_f64);
     for (start, current) in [(0, current), (2000, 0.0)] {
+        let before = energy(&simulation, current);
         for n in start..start + 2000 {
             simulation.step(&coil(current), f64::from(n) * 1e-5, 1e-5).unwrap();
             seated += i32::from(simulation.real(RealOutput::ArmatureGap) < 0.0);
             rested += i32::from(simulation.real(RealOutput::ArmatureDisplacement) < given.rest_position);
             fastest = fastest.max(simulation.real(RealOutput::ArmatureVelocity));
             let kinetic = 0.5 * given.mass * fastest * fastest;
+            let lost = energy(&simulation, current) - before;
+            assert!(lost.abs() < 1e-4 * kinetic.max(1e-7), "{n}: {lost} of {kinetic}");
             let balance = simulation.real(RealOutput::EnergyBalance);
             assert!(balance.abs() < 1e-4 * kinetic.max(1e-7), "{n}: {balance} of {kinetic}");
         }

@@ -1,9 +1,9 @@
-//! The random acceleration: its power, and its spectrum over many seeds.
+//! The random acceleration: its power, its spectrum, its seed.
 
 use std::f64::consts::{PI, TAU};
 use testing::close;
 
-use super::{generator, random};
+use super::{equal_steps, forces, generator, random, undriven};
 
 #[test]
 fn random_acceleration_has_the_power_asked_for() {
@@ -70,4 +70,20 @@ fn random_acceleration_has_a_flat_spectrum_and_nothing_outside_its_band() {
         (mean - 1.0).abs() < 4.0 / (f64::from(seeds) * inside.len() as f64).sqrt(),
         "{mean}"
     );
+}
+
+#[test]
+fn a_seed_chooses_the_course() {
+    let course = |seed: i32| {
+        let mut scene = random(1e-4, 20.0, 2000.0, 2.0);
+        scene.excitation.seed = seed;
+        forces(&scene, &equal_steps(2e-4, 20), undriven).0
+    };
+    let (first, again, other) = (course(7), course(7), course(8));
+    assert_eq!(
+        first.iter().map(|f| f.to_bits()).collect::<Vec<_>>(),
+        again.iter().map(|f| f.to_bits()).collect::<Vec<_>>()
+    );
+    let difference = first.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(difference > 1e-2, "{difference}");
 }

@@ -48,6 +48,14 @@ fn a_spring_of_the_resources_is_read_and_can_be_left_again() {
     assert_eq!(fmu.string("beam.file"), "");
     fmu.initialize();
     assert_eq!(fmu.real("preload.force").to_bits(), uniform.to_bits());
+    // Outputs in Initialization Mode follow it too.
+    let fmu = in_scenes();
+    assert_eq!(fmu.enter_initialization_mode(), fmi2OK);
+    assert_eq!(fmu.real("preload.force").to_bits(), uniform.to_bits());
+    assert_eq!(fmu.set_string("beam.file", FILE), fmi2OK);
+    assert_eq!(fmu.real("preload.force").to_bits(), tapered.to_bits());
+    assert_eq!(fmu.set_string("beam.file", ""), fmi2OK);
+    assert_eq!(fmu.real("preload.force").to_bits(), uniform.to_bits());
 }
 
 #[test]

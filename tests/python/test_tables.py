@@ -140,6 +140,8 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("time [ms],base.acceleration [mm]\n0,1\n", "column base.acceleration: unit mm: not allowed, allowed is m/s2"),
+        ("time,base.aceleration [g]\n0,1\n", "column base.aceleration: unknown; did you mean base.acceleration"),
         ("time,level\n0,1\n", "columns time, level: not allowed, allowed is time and one or more of base.acceleration"),
         ("base.acceleration [g],x\n0,1\n", "columns base.acceleration, x: not allowed, allowed is time and"),
         ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", ":4: column time: 0.1 ms: not allowed"),
