@@ -34,18 +34,37 @@ impl Variant {
         };
         if let Some(path) = spring {
             let (file, text) = read(path)?;
+            let declaration = declaration("beam.file", description)?;
             variant.name = format!("{name}-{}", file.trim_end_matches(".toml"));
-            let own = format!("<String start=\"{file}\"/>");
-            let parts = description.split_once("name=\"beam.file\"");
-            let (before, after) = parts.context("beam.file: not declared")?;
-            variant.description = [before, &after.replacen("<String start=\"\"/>", &own, 1)]
-                .join("name=\"beam.file\"")
-                .replacen(&format!("\"{name}\""), &format!("\"{}\"", variant.name), 1)
-                .replacen(guid, &guid_carrying(guid, &file, &text), 1);
+            for (given, carrying) in [
+                (
+                    format!("modelName=\"{name}\""),
+                    format!("modelName=\"{}\"", variant.name),
+                ),
+                (guid.to_owned(), guid_carrying(guid, &file, &text)),
+                (
+                    declaration.to_owned(),
+                    declaration.replace("<String start=\"\"/>", &format!("<String start=\"{file}\"/>")),
+                ),
+            ] {
+                ensure!(
+                    variant.description.matches(&given).count() == 1,
+                    "not once in the description: {given}"
+                );
+                variant.description = variant.description.replace(&given, &carrying);
+            }
             variant.spring = Some((file, text));
         }
         Ok(variant)
     }
+}
+
+/// The declaration of a variable in a description.
+fn declaration<'a>(name: &str, description: &'a str) -> Result<&'a str> {
+    let mut declarations = description.split_inclusive("</ScalarVariable>");
+    let found = declarations.find(|declaration| declaration.contains(&format!("name=\"{name}\"")));
+    let found = found.with_context(|| format!("{name}: not declared"))?;
+    Ok(found.split_once("<ScalarVariable ").map_or(found, |(_, own)| own))
 }
 
 /// Name and text of a spring file, checked.
