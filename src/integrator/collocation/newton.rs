@@ -29,7 +29,7 @@ use crate::math::simd::{Arithmetic, Separate};
 use crate::model::Model;
 use crate::state::State;
 
-/// Unknown forces of which the equations stand on the stack; those of more would fill that of a small thread.
+/// Unknown forces of which the equations stand on the stack.
 pub(super) const FEW: usize = 3;
 
 /// A link whose force is unknown, and what follows it.

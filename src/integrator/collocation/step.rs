@@ -11,7 +11,7 @@ use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
-use crate::link::MAX_PORTS;
+use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
@@ -43,26 +43,26 @@ pub fn compute<const S: usize>(
     match unknowns.count {
         0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch, &mut Equations::new(1))),
         2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch, &mut Equations::new(2))),
-        FEW => compute_many(&step, trial, scratch, &mut Equations::<S, FEW>::new(FEW)),
-        count => {
-            let mut equations = scratch.many.take()?;
-            equations.count = count;
-            let done = compute_many(&step, trial, scratch, &mut equations);
-            scratch.many = Some(equations);
-            done
-        }
+        FEW => compute_few(&step, trial, scratch),
+        _ => compute_many(&step, trial, scratch),
     }
 }
 
-/// Of many unknowns, which take room on the stack that others need not have.
+/// Of a few unknowns, whose equations take room on the stack that others need not have.
 #[inline(never)]
-fn compute_many<const S: usize, const L: usize>(
-    step: &Step<S>,
-    trial: &mut Trial<S>,
-    scratch: &mut Scratch<S>,
-    equations: &mut Equations<S, L>,
-) -> Option<()> {
-    compiled_for!(step.model.simd, A => step.compute::<L, A>(trial, scratch, equations))
+fn compute_few<const S: usize>(step: &Step<S>, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
+    let mut equations = Equations::<S, FEW>::new(FEW);
+    compiled_for!(step.model.simd, A => step.compute::<FEW, A>(trial, scratch, &mut equations))
+}
+
+/// Of many unknowns, whose equations are on the heap: on the stack they would fill that of a small thread.
+#[inline(never)]
+fn compute_many<const S: usize>(step: &Step<S>, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
+    let mut equations = scratch.many.take()?;
+    equations.count = step.unknowns.count;
+    let done = compiled_for!(step.model.simd, A => step.compute::<MAX_UNKNOWNS, A>(trial, scratch, &mut equations));
+    scratch.many = Some(equations);
+    done
 }
 
 /// What a step is computed from.

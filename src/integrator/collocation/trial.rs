@@ -72,7 +72,7 @@ pub enum Source {
     Given,
 }
 
-/// Room for a trial while it is computed; of the last two only where a model needs it.
+/// Room for a trial while it is computed; all but the first only where a model needs it.
 #[derive(Clone, Debug)]
 pub struct Scratch<const S: usize> {
     pub(super) free: Box<FreeResponse<S>>,
