@@ -171,6 +171,12 @@ pub enum Remark {
         coefficient: f64,
         height: f64,
     },
+    /// A criterion of interruptions that even an open contact does not meet.
+    #[error(
+        "chatter.resistanceThreshold = {} Ohm: an open contact has resistance.open = {} Ohm, so that no interruption is counted",
+        number(*threshold), number(*open)
+    )]
+    NoInterruption { threshold: f64, open: f64 },
     /// Modes that end below what a blow excites.
     #[error(
         "{name} = {file}: its modes end at {highest:.0} Hz, a blow of the contact excites the spring up to {reached:.0} Hz; \
@@ -255,9 +261,9 @@ pub enum StepErrorCause {
     /// A time so large that the spacing of floating-point numbers exceeds what the motion or the communication step needs.
     #[error("the floating-point spacing of time is {spacing:e} s, allowed is {allowed:e} s")]
     Resolution { spacing: f64, allowed: f64 },
-    /// A fixed contact faster than light.
-    #[error("support.displacement would move at {0:e} m/s, allowed is the speed of light")]
-    Speed(f64),
+    /// A body that an input moves faster than light.
+    #[error("{input} would move at {speed:e} m/s, allowed is the speed of light")]
+    Speed { input: &'static str, speed: f64 },
     /// Two fixed contacts that touch.
     #[error("second.displacement = {} m brings the second fixed contact to the first, allowed is less than {} m", number(*displacement), number(*limit))]
     NoRoom { displacement: f64, limit: f64 },

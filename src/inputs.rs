@@ -2,7 +2,7 @@
 //! `build.rs`.
 
 use crate::error::SceneError;
-use crate::link::Ways;
+use crate::link::{INPUTS, Ways};
 use crate::scene::check_range;
 use crate::variables::RealInput;
 use serde::{Deserialize, Serialize};
@@ -75,7 +75,14 @@ impl Inputs {
         }
     }
 
-    /// Displacements of the bodies that inputs move after `size` seconds, m.
+    /// Those that move bodies.
+    pub const MOVING: [RealInput; INPUTS] = [
+        RealInput::SupportDisplacement,
+        RealInput::SecondDisplacement,
+        RealInput::PusherDisplacement,
+    ];
+
+    /// Displacements of the bodies that inputs move after `size` seconds, m, in the order of [`Self::MOVING`].
     pub fn displacements_after(&self, size: f64) -> Ways {
         [
             self.support_displacement + self.support_displacement_rate * size,

@@ -35,7 +35,7 @@ pub const MAX_LINKS: usize = 8;
 /// Most links whose forces are unknown at the same time.
 pub const MAX_UNKNOWNS: usize = 6;
 
-/// Inputs that move bodies: the fixed contact, the second one relative to it, and the pusher.
+/// Inputs that move bodies ([`MOVING`](crate::inputs::Inputs::MOVING)): the fixed contact, the second one relative to it, and the pusher.
 pub const INPUTS: usize = 3;
 
 /// A displacement (m) or velocity (m/s) for each of [`INPUTS`], in that order.

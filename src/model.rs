@@ -16,7 +16,7 @@ use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
-use crate::link::{Link, LinkLaw, MAX_LINKS, Port};
+use crate::link::{CONTACT, Link, LinkLaw, MAX_LINKS, Port};
 use crate::math::simd::Simd;
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
@@ -159,6 +159,7 @@ impl Model {
         let unstable = unstable.filter_map(|unstable| unstable.remark(&self.scene));
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
         let remarks = self.bent_far().into_iter().chain(self.friction_at_touch());
+        let remarks = remarks.chain(self.no_interruption());
         let remarks = remarks.chain(unstable).chain(not_used);
         remarks.chain(self.few_modes()).collect()
     }
@@ -186,6 +187,13 @@ impl Model {
             exponent,
             range: RUBBING,
         })
+    }
+
+    fn no_interruption(&self) -> Option<Remark> {
+        let electrical = self.links.get(CONTACT)?.electrical.is_some();
+        let (threshold, open) = (self.scene.chatter.resistance_threshold, self.scene.resistance.open);
+        let none = self.scene.effects.chatter && electrical && !self.counts_interruptions();
+        none.then_some(Remark::NoInterruption { threshold, open })
     }
 
     fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {

@@ -1,7 +1,9 @@
 //! Interruptions and extremes inside communication steps. The first interruption is that of another solution in
 //! `tests/python/test_effects_outputs.py`; `parallel.rs` compares several with a trace.
 
+use relay_contact::error::Remark;
 use relay_contact::inputs::Inputs;
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind};
@@ -44,6 +46,20 @@ fn interruptions(scene: &Scene, size: f64, stop: f64) -> (i32, f64, f64) {
             .unwrap();
     }
     counted(&simulation)
+}
+
+#[test]
+fn a_threshold_that_an_open_contact_does_not_reach_is_told() {
+    let mut scene = Scene::default();
+    for (threshold, reached) in [(0.999e9, true), (1e9, false), (2e9, false)] {
+        scene.chatter.resistance_threshold = threshold;
+        let open = scene.resistance.open;
+        let told = [Remark::NoInterruption { threshold, open }];
+        let expected = if reached { &told[..0] } else { &told };
+        assert_eq!(Model::new(&scene, 0.0).unwrap().remarks(), expected);
+    }
+    scene.effects.chatter = false;
+    assert_eq!(Model::new(&scene, 0.0).unwrap().remarks(), []);
 }
 
 #[test]

@@ -209,6 +209,16 @@ fn steps_at_the_tightest_tolerance_do_not_stay_short() {
     }
 }
 
+/// Twin contacts without damping part at the same instant, but for rounding, which once opened and closed them a thousand times.
+#[test]
+fn contacts_that_part_together_part_once() {
+    let twins = kinds::any(60_356);
+    for tolerance in [1e-2, 1e-4, twins.scene.solver.tolerance, 1e-8] {
+        let (course, failure) = twins.run(|scene| scene.solver.tolerance = tolerance).unwrap();
+        assert_eq!((course.events.len(), failure), (78, None), "{tolerance}");
+    }
+}
+
 /// Relays above their tolerance in earlier versions: where a half sine ends, inside a long step, through the quadrature of a
 /// random acceleration in flight, and where the error estimate of a step passes through zero; with friction, where the
 /// contact begins or ceases to slip, or seems to in a step that ends before; on a core, where the magnet kept a force of just

@@ -2,6 +2,7 @@
 //! trial, judged, searched for events, and committed up to the first of them.
 
 use crate::error::{StepError, StepErrorCause};
+use crate::inputs::Inputs;
 use crate::integrator::collocation::trial::Trial;
 use crate::integrator::constants::{HALVINGS, LEAST_SHRINK, MOST_SHRINK, SAFETY, STEP_GROWTH};
 use crate::integrator::energy::conservation;
@@ -14,7 +15,7 @@ use crate::integrator::workspace::{Rooms, Workspace};
 use crate::math::nodal::{LONG, SHORT};
 use crate::state::State;
 
-/// Limit of the velocity of a fixed contact, m/s.
+/// Limit of the velocity of a body that an input moves, m/s.
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 impl Stepper<'_> {
@@ -23,8 +24,10 @@ impl Stepper<'_> {
     /// # Errors
     /// A [`StepError`]; the state is then undefined.
     pub(crate) fn run(&mut self) -> Result<(), StepError> {
-        if let Some(speed) = self.drive.velocities.iter().find(|speed| speed.abs() > SPEED_OF_LIGHT) {
-            return Err(self.error(StepErrorCause::Speed(*speed)));
+        let mut speeds = Inputs::MOVING.iter().zip(self.drive.velocities);
+        if let Some((input, speed)) = speeds.find(|(_, speed)| speed.abs() > SPEED_OF_LIGHT) {
+            let input = input.variable().name;
+            return Err(self.error(StepErrorCause::Speed { input, speed }));
         }
         transition::set_velocities(self.model, self.state, &self.drive, &mut self.workspace.events);
         transition::set_coil(self.model, self.state, self.drive.coil);

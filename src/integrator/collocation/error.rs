@@ -75,6 +75,8 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             rounding = rounding.max(FORCE_ROUNDING * largest.max(link.force));
             let mut missed = defects.0[unknown.link].abs();
             squares += missed * missed;
+            // Where a contact has just parted there is no force, but for what rounding misses.
+            largest = largest.max(missed);
             inside += greatest(&wrong.forces[a]);
             if let Some((follower, share)) = unknown.follower {
                 let along = defects.0[follower].abs();
