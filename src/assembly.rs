@@ -101,6 +101,7 @@ impl Assembly {
                 force: preload.force,
                 approach: preload.indentation,
                 driven: [1.0, 0.0, 0.0],
+                circuit: Some(0),
                 ..Link::passive("contact", LinkLaw::Contact(law), port)
             }
         };
@@ -129,7 +130,7 @@ impl Assembly {
                 driven: [-1.0, 1.0, 0.0],
                 force: 0.0,
                 approach: -scene.second.gap,
-                circuit: 1,
+                circuit: Some(1),
                 ..contact(law)
             }));
         }

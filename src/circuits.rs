@@ -78,7 +78,8 @@ impl Circuits {
         *at = !*at;
         let mut counted = links.iter().zip(&self.interrupted);
         let all = counted.all(|(other, at)| *at || other.criterion.is_none() || other.circuit != link.circuit);
-        if let (Some(circuit), Some(criterion)) = (self.interruptions.get_mut(link.circuit), &link.criterion)
+        if let (Some(circuit), Some(criterion)) = (link.circuit, &link.criterion)
+            && let Some(circuit) = self.interruptions.get_mut(circuit)
             && circuit.in_progress() != all
         {
             circuit.turn(criterion, time);

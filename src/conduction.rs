@@ -9,8 +9,8 @@ use crate::variables::RealOutput;
 /// What a circuit conducts.
 struct Conducting {
     electrical: ElectricalContact,
-    /// Its contact, and one parallel to it.
-    contacts: [Option<usize>; 2],
+    /// Its contact, and one parallel to it, each with its own law.
+    contacts: [Option<(usize, ElectricalContact)>; 2],
     /// Conductance of the spot of each, S.
     spots: [f64; 2],
     /// All of it, S.
@@ -20,9 +20,11 @@ struct Conducting {
 impl Conducting {
     /// The circuit of a contact; `None` without the contact or a resistance.
     fn of(model: &Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
-        let electrical = model.links.get(role?)?.electrical?;
-        let contacts = [role, model.roles.parallel.filter(|_| role == Some(CONTACT))];
-        let spots = contacts.map(|contact| contact.map_or(0.0, |index| electrical.spot(motion.force(model, index))));
+        let parallel = model.roles.parallel.filter(|_| role == Some(CONTACT));
+        let contacts = [role, parallel].map(|index| Some((index?, model.links.get(index?)?.electrical?)));
+        let (_, electrical) = contacts[0]?;
+        let spot = |(index, law): (usize, ElectricalContact)| law.spot(motion.force(model, index));
+        let spots = contacts.map(|contact| contact.map_or(0.0, spot));
         Some(Self {
             electrical,
             contacts,
@@ -34,9 +36,8 @@ impl Conducting {
     /// Rates of the conductances of both spots, S/s.
     fn rates(&self, model: &Model, motion: &Motion) -> [f64; 2] {
         self.contacts.map(|contact| {
-            contact.map_or(0.0, |index| {
-                let force = motion.force(model, index);
-                self.electrical.conductance_slope(force) * motion.link_rates(model, index).0
+            contact.map_or(0.0, |(index, law)| {
+                law.conductance_slope(motion.force(model, index)) * motion.link_rates(model, index).0
             })
         })
     }

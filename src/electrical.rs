@@ -106,7 +106,10 @@ impl ElectricalContact {
                 f64::MIN_POSITIVE
             };
         }
-        (self.coefficient / constriction).powf(1.0 / self.exponent)
+        // At a small exponent, a force below all that can be told from none.
+        (self.coefficient / constriction)
+            .powf(1.0 / self.exponent)
+            .max(f64::MIN_POSITIVE)
     }
 
     /// Temperature of the contact spot at a force (N) and a current (A), K: `T^2 = T_0^2 + V^2 / (4 L)` with the

@@ -128,13 +128,24 @@ pub enum SceneError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages tell what the fields are")]
 pub enum Remark {
-    /// A dimension of the uniform section, set beside a spring file.
+    /// What describes another kind of spring, set beside a spring file.
     #[error("{name} = {}{}: not used, the spring is that of beam.file = {file}", number(*value), spaced(unit))]
     NotUsed {
         name: &'static str,
         value: f64,
         unit: &'static str,
         file: String,
+    },
+    /// A spring that forks, and does not in the scene.
+    #[error(
+        "{name} = {file}: fork_position = {} m: not used, both tongues move as one; only those of beam.file with \
+         effects.parallelContact = true move apart",
+        number(*fork)
+    )]
+    Joined {
+        name: &'static str,
+        file: String,
+        fork: f64,
     },
     /// A spring bent so far that a linear beam misses a part of its force.
     #[error(

@@ -25,13 +25,13 @@ const PER_STEP: f64 = 50.0;
 /// What is known of the error so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ForceError {
-    /// Greatest contact force so far at the end of a step, N.
+    /// Greatest force so far at the end of a step of a contact that conducts, N.
     pub greatest: f64,
     /// Largest estimate of the error that a step has added, relative to the larger of force scale and greatest force so far.
     pub largest: f64,
     /// The deviation, of size 1; zero until the contact first opens or closes.
     pub deviation: Deviation,
-    /// Forces that it causes in the links.
+    /// Forces that it makes in the links.
     pub forces: [f64; MAX_LINKS],
     /// Logarithm of its size, were it not brought back to 1.
     pub growth: f64,
@@ -147,7 +147,7 @@ impl ForceError {
 
     /// Modes left out make an error (N).
     pub fn note_unresolved(&mut self, error: f64, force_scale: f64) {
-        self.unresolved = self.unresolved.max(error / force_scale.max(self.greatest));
+        self.unresolved = self.unresolved.max((error / force_scale.max(self.greatest)).min(1.0));
     }
 
     /// Whether there is a deviation, as the contact has opened or closed.

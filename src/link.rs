@@ -115,8 +115,8 @@ pub struct Link {
     pub electrical: Option<ElectricalContact>,
     /// Criterion for its interruptions, if they are counted.
     pub criterion: Option<Criterion>,
-    /// The circuit that it closes ([`crate::circuits`]).
-    pub circuit: usize,
+    /// The circuit that it closes ([`crate::circuits`]); `None`: it conducts nothing.
+    pub circuit: Option<usize>,
 }
 
 impl Link {
@@ -132,7 +132,7 @@ impl Link {
             approach: 0.0,
             electrical: None,
             criterion: None,
-            circuit: 0,
+            circuit: None,
         }
     }
 

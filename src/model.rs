@@ -20,7 +20,7 @@ use crate::link::{CONTACT, Link, LinkLaw, MAX_LINKS, Port};
 use crate::math::simd::Simd;
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
-use crate::scene::spring::SpringFile;
+use crate::scene::spring::{Shape, SpringFile};
 use crate::slip_stability::{self, Unstable};
 use crate::state::{LinkState, State};
 use crate::variables::{ContactLawKind, RealParameter, StringParameter};
@@ -31,6 +31,22 @@ const BENT_FAR: f64 = 0.1;
 /// Exponents of the stiffness with which friction keeps the tolerance where the contact opens: of 100 random relays two do not
 /// at 0.54, eight at 0.7.
 const RUBBING: Range<f64> = 0.1..0.6;
+
+/// What describes the uniform spring alone.
+const OF_UNIFORM: [RealParameter; 3] = [
+    RealParameter::BeamLength,
+    RealParameter::BeamWidth,
+    RealParameter::BeamThickness,
+];
+
+/// What springs by segments need beside their file, and springs by modes do not.
+const OF_SEGMENTS: [RealParameter; 5] = [
+    RealParameter::BeamYoungsModulus,
+    RealParameter::BeamDensity,
+    RealParameter::TipMass,
+    RealParameter::TipRotaryInertia,
+    RealParameter::PusherPosition,
+];
 
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
@@ -160,7 +176,7 @@ impl Model {
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
         let remarks = self.bent_far().into_iter().chain(self.friction_at_touch());
         let remarks = remarks.chain(self.no_interruption());
-        let remarks = remarks.chain(unstable).chain(not_used);
+        let remarks = remarks.chain(unstable).chain(not_used).chain(self.joined());
         remarks.chain(self.few_modes()).collect()
     }
 
@@ -197,20 +213,35 @@ impl Model {
     }
 
     fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
-        let sizes = [
-            RealParameter::BeamLength,
-            RealParameter::BeamWidth,
-            RealParameter::BeamThickness,
-        ];
-        let set = sizes
-            .into_iter()
-            .filter(|size| self.scene.real(*size) != size.variable().start);
+        let by_modes = matches!(spring.shape, Shape::Modes(_));
+        let of_segments = OF_SEGMENTS.into_iter().filter(move |_| by_modes);
+        let set = OF_UNIFORM.into_iter().chain(of_segments);
+        let set = set.filter(|size| self.scene.real(*size) != size.variable().start);
         set.map(|size| Remark::NotUsed {
             name: size.variable().name,
             value: self.scene.real(size),
             unit: size.variable().unit,
             file: spring.name.clone(),
         })
+    }
+
+    /// Springs whose tongues move as one.
+    fn joined(&self) -> impl Iterator<Item = Remark> {
+        let parallel = self.scene.effects.parallel_contact;
+        let files = [
+            (&self.scene.spring, parallel, StringParameter::BeamFile),
+            (&self.scene.fixed_spring, false, StringParameter::FixedFile),
+        ];
+        files.into_iter().filter_map(
+            |(spring, forks, parameter)| match spring.as_ref().map(|file| &file.shape) {
+                Some(Shape::Segments(segments)) if !forks => Some(Remark::Joined {
+                    name: parameter.variable().name,
+                    file: self.scene.string(parameter).to_owned(),
+                    fork: segments.fork_position?,
+                }),
+                _ => None,
+            },
+        )
     }
 
     fn few_modes(&self) -> Option<Remark> {

@@ -338,7 +338,7 @@ impl Simulation {
 
     fn monitored(&self, role: Option<usize>, summary: fn(&Interruptions, &Criterion, f64) -> Summary) -> Summary {
         let link = role.and_then(|index| self.model.links.get(index));
-        let counted = link.and_then(|link| Some((link.circuit, link.criterion?)));
+        let counted = link.and_then(|link| Some((link.circuit?, link.criterion?)));
         counted.map_or_else(Summary::default, |(circuit, criterion)| {
             let interruptions = self.motion.interruptions(&self.model, circuit);
             summary(&interruptions, &criterion, self.time())

@@ -9,7 +9,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{ContactLawKind, ExcitationKind, FrictionKind, IntegerOutput, PusherKind, RealOutput};
 use testing::rig::Rig;
 use testing::scenes::{self, accelerated, supported, undamped};
 
@@ -216,6 +216,34 @@ fn the_balance_stays_below_the_tolerance() {
             }
         }
     }
+}
+
+/// With a coefficient of 0 no friction acts: also where a contact opens by its damping while a pusher presses.
+#[test]
+fn friction_without_force_does_not_change_the_balance() {
+    let balance = |friction| {
+        let mut scene = Scene::default();
+        (scene.contact.overtravel, scene.pusher.position) = (-1e-4, 0.012);
+        (scene.effects.pusher, scene.effects.friction) = (PusherKind::Prescribed, friction);
+        (scene.friction.coefficient, scene.effects.energy) = (0.0, true);
+        let pressed = Inputs {
+            pusher_displacement: 3e-4,
+            ..Inputs::default()
+        };
+        let mut simulation = Simulation::new(&scene, &pressed, 0.0).unwrap();
+        for k in 0..40 {
+            let support_displacement = if k % 2 == 0 { 0.0 } else { -2e-7 };
+            let inputs = Inputs {
+                support_displacement,
+                ..pressed
+            };
+            simulation.step(&inputs, f64::from(k) * 2e-5, 2e-5).unwrap();
+        }
+        assert!(simulation.real(RealOutput::ContactLastOpening) > 0.0);
+        simulation.real(RealOutput::EnergyBalance)
+    };
+    let [without, with] = [FrictionKind::None, FrictionKind::Coulomb].map(balance);
+    assert!((with - without).abs() < 1e-12, "{with:e} {without:e}");
 }
 
 /// Chatter with the balance kept.

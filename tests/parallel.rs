@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Model;
-use relay_contact::scene::Scene;
+use relay_contact::reference::{Model, reduced_modulus};
 use relay_contact::scene::spring::{GivenMode, Segments, Shape};
+use relay_contact::scene::{Contact, Scene};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{
+    AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind,
+};
 use testing::near;
 use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
 use testing::springs::{mode, of_modes, segment, spring_file};
@@ -161,6 +163,49 @@ fn the_circuit_is_interrupted_while_both_are_open() {
         // Two samples for each interruption, and the time in which the resistance is above the threshold while a contact touches.
         let allowed = f64::from(begins) * (2.0 * step + 1e-7);
         assert!((total - open).abs() < allowed, "{total} {open}");
+    }
+}
+
+/// By Barber, `k / (rho E*)` with the stiffness `k` of each under its own force: of spheres `(6 E*^2 R F)^(1/3)`, of rough contacts
+/// `k_r (F / F_r)^n`.
+#[test]
+fn each_conducts_by_its_own_stiffness() {
+    let mut scene = pair(shaken(98.0, 1000.0));
+    scene.effects.resistance = ResistanceKind::Barber;
+    (scene.parallel.curvature_radius, scene.parallel.stiffness) = (1e-3, 4.37e5);
+    let modulus = reduced_modulus(&scene.contact);
+    for law in [ContactLawKind::Hertz, ContactLawKind::Rough] {
+        scene.effects.contact_law = law;
+        let (
+            Contact {
+                curvature_radius,
+                stiffness,
+                stiffness_force,
+                stiffness_exponent,
+                ..
+            },
+            parallel,
+        ) = (&scene.contact, &scene.parallel);
+        let of_each = [
+            (*curvature_radius, *stiffness),
+            (parallel.curvature_radius, parallel.stiffness),
+        ];
+        let conducts = |force: f64, (radius, stiffness): (f64, f64)| {
+            let stiffness = match law {
+                ContactLawKind::Hertz => (6.0 * modulus.powi(2) * radius * force).cbrt(),
+                _ => stiffness * (force / stiffness_force).powf(*stiffness_exponent),
+            };
+            stiffness / (scene.resistance.resistivity * modulus)
+        };
+        let outputs = [BOTH[0], BOTH[1], RealOutput::ContactConductance];
+        let (found, last) = course(&scene, 1e-5, 50, outputs);
+        for (n, [first, other, conductance]) in found.into_iter().enumerate() {
+            let expected = conducts(first, of_each[0]) + conducts(other, of_each[1]);
+            near(format_args!("{law:?} {n}"), conductance, expected, 1e-6 * expected);
+        }
+        let [greatest, present] =
+            [RealOutput::StepMaximumResistance, RealOutput::ContactResistance].map(|o| last.real(o));
+        assert!(greatest >= present * (1.0 - 1e-12), "{greatest} {present}");
     }
 }
 

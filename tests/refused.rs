@@ -58,6 +58,12 @@ fn with_mode(scene: &mut Scene, rotation: Option<f64>) {
     scene.spring = spring_file("own.toml", of_modes(1e-3, [given]));
 }
 
+/// A fixed contact on such a spring.
+fn fixed_mode(scene: &mut Scene, rotation: Option<f64>) {
+    with_mode(scene, rotation);
+    scene.fixed_spring = scene.spring.take();
+}
+
 #[rustfmt::skip]
 const FRICTION: &[Case] = &[
     (|_, _| (), &[]),
@@ -67,6 +73,8 @@ const FRICTION: &[Case] = &[
     (|scene, _| following(scene), &["effects.axialForce = FromDeflection"]),
     (|scene, _| with_mode(scene, Some(1e4)), &[]),
     (|scene, _| with_mode(scene, None), &["own.toml", "rotation"]),
+    (|scene, _| fixed_mode(scene, Some(1e4)), &[]),
+    (|scene, _| fixed_mode(scene, None), &["fixed.file = own.toml", "rotation"]),
     // At two thirds of the length the moment of the friction force bends the spring back as far as the contact force bends it.
     (|scene, _| gripping(scene, 2.0, -1.0), &["friction.coefficient = 2 ", "0.01033"]),
     (|scene, _| gripping(scene, 2.0, 0.0), &[]),

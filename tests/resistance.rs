@@ -70,6 +70,10 @@ fn the_force_at_a_threshold_is_where_the_resistance_passes_it() {
             assert_eq!(electrical.force_at(2e9), 0.0);
         }
     }
+    // 1e-380 N.
+    let mut level = scene(ResistanceKind::PowerLaw);
+    level.resistance.exponent = 0.01;
+    assert_eq!(of(&level).unwrap().force_at(60.0), f64::MIN_POSITIVE);
     let mut filmed = scene(ResistanceKind::PowerLaw);
     filmed.resistance.film = 100.0;
     assert_eq!(of(&filmed).unwrap().force_at(60.0), f64::INFINITY);

@@ -218,6 +218,31 @@ fn between_rows_inputs_are_linear_and_beyond_them_held() -> Result<(), Box<dyn E
     // Over a row the rate leads to the value at the end of the step.
     let over = file.inputs_over(0.5, 0.5)?;
     assert_eq!((over.contact_current, over.contact_current_rate), (1.0, 1.0));
+    // Over two the course between them would be lost.
+    let passed = file.inputs_over(0.2, 0.6).unwrap_err().to_string();
+    assert!(
+        passed.contains("communicationStep = 0.6 s") && passed.contains("0.5 s"),
+        "{passed}"
+    );
+    assert!(file.inputs_over(0.25, 0.5).is_ok() && file.inputs_over(0.25 * (1.0 - 1e-15), 0.5 * (1.0 + 1e-14)).is_ok());
+    Ok(())
+}
+
+#[test]
+fn a_table_beside_the_run_is_refused() -> Result<(), Box<dyn Error>> {
+    for (rows, is_refused) in [
+        ("3600,0\n3600.1,1\n", true),
+        ("-2,0\n-1,1\n", true),
+        ("-1,0\n0.1,1\n", false),
+    ] {
+        let file = with_table(&tempfile::tempdir()?, &format!("time,contact.current\n{rows}"), "");
+        let refused = file.err().map(|error| error.to_string()).unwrap_or_default();
+        assert_eq!(
+            refused.contains("the run lasts from 0 to"),
+            is_refused,
+            "{rows}: {refused}"
+        );
+    }
     Ok(())
 }
 

@@ -38,6 +38,8 @@ const OF_BOUND: f64 = 0.25;
 #[derive(Clone, Debug, Default)]
 pub struct Resolution {
     parts: Vec<Part>,
+    /// Whether one mode has to do for a spring: a closed contact holds it, and nothing is seen of what is missing.
+    is_blind: bool,
 }
 
 /// Coefficients of the last functions of the space of a spring, and what they mean for the contact force.
@@ -68,8 +70,10 @@ impl Resolution {
                 force,
             })
         };
+        let parts: Vec<_> = blows.into_iter().enumerate().filter_map(part).collect();
         Self {
-            parts: blows.into_iter().enumerate().filter_map(part).collect(),
+            is_blind: basis.modes.len() == 1 && !parts.is_empty(),
+            parts,
         }
     }
 
@@ -82,23 +86,29 @@ impl Resolution {
         };
         Self {
             parts: self.parts.iter().map(part).collect(),
+            ..*self
         }
     }
 
-    /// Error of the contact force in this motion of the modes, where the contact has this stiffness (N/m), N.
+    /// Error of the contact force in this motion of the modes, where the contact has this stiffness (N/m), N; the greatest number if it
+    /// is not known.
     #[inline(always)]
     pub fn error_of(&self, modes: &ModeStates, stiffness: f64) -> f64 {
         let of = |part: &Part| {
             let damping = part.damping * stiffness;
             part.error(modes.iter().map(|mode| mode.q + damping * mode.v))
         };
-        self.parts.iter().map(of).sum()
+        self.known(self.parts.iter().map(of).sum())
     }
 
     /// Error of the contact force in a motion with these displacements, N.
     #[inline(always)]
     pub fn error(&self, displacements: &(impl Iterator<Item = f64> + Clone)) -> f64 {
-        self.parts.iter().map(|part| part.error(displacements.clone())).sum()
+        self.known(self.parts.iter().map(|part| part.error(displacements.clone())).sum())
+    }
+
+    fn known(&self, error: f64) -> f64 {
+        if self.is_blind { f64::MAX } else { error }
     }
 }
 

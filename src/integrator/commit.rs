@@ -38,7 +38,9 @@ pub(crate) fn commit<const S: usize>(
         match &link.law {
             LinkLaw::Contact(law) if at.closed => {
                 at.force = law.without_pull(link.force + nodes.end.force);
-                state.force_error.greatest = state.force_error.greatest.max(at.force);
+                if link.circuit.is_some() {
+                    state.force_error.greatest = state.force_error.greatest.max(at.force);
+                }
             }
             LinkLaw::Magnet(magnet) => at.force = magnet.force(link.approach + at.approach, state.coil).0,
             _ => {}
@@ -82,7 +84,7 @@ fn advance_deviation<const S: usize>(
     });
     compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, &free, at_work));
     if target.length > SEEN {
-        state.force_error.note_deviation(model.force_scale);
+        state.force_error.note_deviation(&model.links, model.force_scale);
     }
 }
 

@@ -9,17 +9,33 @@ use std::mem;
 
 use crate::force_error::{Deviation, ForceError, FreeMotions, MODES, Slowest};
 use crate::integrator::collocation::newton::Tangent;
-use crate::link::{CONTACT, MAX_LINKS};
+use crate::link::{CONTACT, Link, MAX_LINKS};
 use crate::math::nodal::{add_products, dot, scaled};
 use crate::math::simd::Arithmetic;
 
+/// Part of the energy of a deviation below which it does not show what happens there, 1. Chosen: one in ten of the amplitude.
+const HIDDEN: f64 = 1e-2;
+
 impl ForceError {
-    /// Begins with a blow where a contact at this port opens or closes, unless there is a deviation already.
+    /// A contact at this port opens or closes, which begins the deviation with a blow, or adds one where its modes have hardly any
+    /// part in it: the other bodies' would hide how errors grow there.
     pub(crate) fn begin(&mut self, slowest: &Slowest, port: usize) {
-        if !self.deviates() {
-            self.deviation.v = slowest.shapes.get(port).copied().unwrap_or_default();
-            self.normalise(slowest);
+        let (Some(shape), Some(by_impulse)) = (slowest.shapes.get(port), slowest.by_impulse.get(port)) else {
+            return;
+        };
+        let Deviation { q, v } = &mut self.deviation;
+        let modes = q.iter().zip(&*v).zip(&slowest.omega_squared).zip(shape);
+        let energies = modes.filter(|(_, shape)| **shape != 0.0);
+        let energy: f64 = energies
+            .map(|(((q, v), omega_squared), _)| omega_squared * q * q + v * v)
+            .sum();
+        if *by_impulse == 0.0 || energy > HIDDEN {
+            return;
         }
+        for (v, shape) in v.iter_mut().zip(shape) {
+            *v += shape / by_impulse;
+        }
+        self.size *= self.normalise(slowest);
     }
 
     /// A step was wrong by an impulse (N s) on a contact at this port; none is known where it is not a number, as in a step with
@@ -28,9 +44,13 @@ impl ForceError {
         self.size += slowest.by_impulse.get(port).copied().unwrap_or_default() * impulse.max(0.0);
     }
 
-    /// The force that the deviation makes is part of the estimate.
-    pub(crate) fn note_deviation(&mut self, force_scale: f64) {
-        let most = self.forces.iter().fold(0.0_f64, |most, force| most.max(force.abs()));
+    /// The force that the deviation makes in the contacts that conduct is part of the estimate.
+    pub(crate) fn note_deviation(&mut self, links: &[Link], force_scale: f64) {
+        let conducting = links
+            .iter()
+            .zip(&self.forces)
+            .filter(|(link, _)| link.circuit.is_some());
+        let most = conducting.fold(0.0_f64, |most, (_, force)| most.max(force.abs()));
         let error = self.size * most / force_scale.max(self.greatest);
         self.by_deviation = self.by_deviation.max(error.min(f64::MAX));
     }
@@ -130,7 +150,7 @@ mod tests {
         for impulse in [f64::NAN, f64::INFINITY] {
             of_steps.disturb(&slowest, 0, impulse);
             of_steps.advance::<Separate>(&slowest, &free, [].into_iter());
-            of_steps.note_deviation(1.0);
+            of_steps.note_deviation(&[], 1.0);
             assert!(of_steps.is_sound(), "{impulse}: {of_steps:?}");
             // Nothing is known of the first, all is lost with the second.
             assert_eq!(of_steps.size > 0.0, impulse.is_infinite());

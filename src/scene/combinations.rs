@@ -52,17 +52,24 @@ impl Scene {
             "false",
             NO_RESISTANCE,
         )?;
-        if let Some(spring) = &self.spring
-            && let Shape::Modes(given) = &spring.shape
-        {
+        for (name, spring) in [("beam.file", &self.spring), ("fixed.file", &self.fixed_spring)] {
+            let Some(spring) = spring else {
+                continue;
+            };
+            let Shape::Modes(given) = &spring.shape else {
+                continue;
+            };
             let lacks = |entry: fn(&GivenMode) -> Option<f64>| given.modes.iter().any(|mode| entry(mode).is_none());
-            let modes = format!("the modes of beam.file = {}", spring.name);
+            let modes = format!("the modes of {name} = {}", spring.name);
             let beside = |instead| (modes.as_str(), instead);
+            let turned = beside("the rotation of the contact, rotation, in each [[mode]]");
+            refuse(rubs && lacks(|mode| mode.rotation), FRICTION.0, "None", turned)?;
+            if name == "fixed.file" {
+                continue;
+            }
             let pressed = effects.axial_force != AxialForceKind::None;
             let geometry = beside("[[segment]], whose geometry an axial force needs");
             refuse(pressed, &axial, "None", geometry)?;
-            let turned = beside("the rotation of the contact, rotation, in each [[mode]]");
-            refuse(rubs && lacks(|mode| mode.rotation), FRICTION.0, "None", turned)?;
             let touched = beside("the displacement there, pusher, in each [[mode]]");
             refuse(pushed && lacks(|mode| mode.pusher), &pusher, "None", touched)?;
             let closed = beside("the displacement there, parallel, in each [[mode]]");

@@ -112,6 +112,7 @@ impl SceneFile {
             table: driving.transpose()?.flatten().unwrap_or_default(),
             folder: folder.to_owned(),
         };
+        file.table.check_overlap(file.stop)?;
         for (role, table) in [(Role::Parameter, parameters), (Role::Input, inputs)] {
             table.map_or(Ok(()), |table| file.apply(role, "", &table))?;
         }

@@ -93,6 +93,20 @@ impl InputTable {
         Ok(())
     }
 
+    /// # Errors
+    /// [`SceneError::InputTable`] if no row is before the end of the run, or none after its start.
+    pub(crate) fn check_overlap(&self, stop: f64) -> Result<(), SceneError> {
+        match (self.times.first(), self.times.last()) {
+            (Some(first), Some(last)) if *first >= stop || *last <= 0.0 => {
+                let [first, last, stop] = [*first, *last, stop].map(crate::error::number);
+                Err(SceneError::InputTable(format!(
+                    "time = {first} to {last} s: the run lasts from 0 to {stop} s"
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Whether the table has a column for the input.
     pub fn drives(&self, input: RealInput) -> bool {
         self.columns.iter().any(|(column, _)| *column == input)
@@ -107,8 +121,29 @@ impl InputTable {
     /// `size` seconds later.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] if a rate is not finite.
+    /// [`SceneError::OutOfRange`] if a rate is not finite, or if the step is longer than the time between two rows: it would pass
+    /// them over.
     pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
+        // Not those that are at its ends but for rounding.
+        let within = |row: &&f64| (1e-9..1.0 - 1e-9).contains(&((**row - time) / size));
+        let first = self.times.partition_point(|row| *row <= time);
+        let mut passed = self
+            .times
+            .iter()
+            .skip(first)
+            .take_while(|row| **row < time + size)
+            .filter(within);
+        if let (Some(row), Some(next)) = (passed.next(), passed.next()) {
+            return Err(SceneError::OutOfRange {
+                name: "communicationStep",
+                value: size,
+                unit: "s",
+                allowed: format!(
+                    "allowed is the time between two rows of the input table, {} s",
+                    crate::error::number(next - row)
+                ),
+            });
+        }
         self.columns.iter().try_for_each(|(input, values)| {
             let value = self.value(values, time);
             inputs.set_real(*input, value)?;

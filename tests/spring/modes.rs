@@ -3,11 +3,11 @@
 use relay_contact::error::Remark;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Shape};
+use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
 use relay_contact::variables::ContactLawKind;
 use testing::close;
 use testing::scenes::{forces, largest_difference, shaken};
-use testing::springs::{mode, of_modes};
+use testing::springs::{mode, of_modes, segment};
 
 use super::{TAU, with};
 
@@ -47,6 +47,36 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
         let difference = largest_difference(&found, &expected);
         assert!(difference < 1e-9 * largest, "{amplitude}: {difference:e}");
     }
+}
+
+/// Modes say what the rivet, the material and the place of a pusher do; tongues are joined where no second contact is on one.
+#[test]
+fn what_does_not_count_beside_a_file_is_told() {
+    let mut scene = with(
+        Scene::default(),
+        Shape::Modes(written(&Model::new(&Scene::default(), 0.0).unwrap())),
+    );
+    (scene.tip.mass, scene.beam.density, scene.pusher.position) = (2e-4, 8000.0, 0.005);
+    let names = |scene: &Scene| -> Vec<_> {
+        let remarks = Model::new(scene, 0.0).unwrap().remarks();
+        let name = |remark| match remark {
+            Remark::NotUsed { name, .. } | Remark::Joined { name, .. } => name,
+            other => panic!("{other}"),
+        };
+        remarks.into_iter().map(name).collect()
+    };
+    assert_eq!(names(&scene), ["beam.density", "tip.mass", "pusher.position"]);
+    let forked = Segments {
+        segments: vec![segment(0.0155, [4e-3; 2], [3e-4; 2])],
+        fork_position: Some(0.01),
+        ..Segments::default()
+    };
+    scene = with(Scene::default(), Shape::Segments(forked));
+    scene.fixed_spring.clone_from(&scene.spring);
+    assert_eq!(names(&scene), ["beam.file", "fixed.file"]);
+    scene.fixed_spring = None;
+    scene.effects.parallel_contact = true;
+    assert_eq!(names(&scene), [""; 0]);
 }
 
 #[test]

@@ -128,7 +128,7 @@ fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
                 LinkLaw::Friction(friction) => {
                     let contact = model.links.get(CONTACT).zip(motion.links.get(CONTACT));
                     let law = model.law().power();
-                    let (Some((contact, across)), Some(law), true) = (contact, law, state.is_closed()) else {
+                    let (Some((contact, across)), Some(law), true) = (contact, law, state.links[CONTACT].closed) else {
                         continue;
                     };
                     let (Some(across), Some(across_rate)) = (across.approaches.get(k), across.rates.get(k)) else {
