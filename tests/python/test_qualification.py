@@ -249,23 +249,27 @@ def test_margins_over_the_overtravel(paper: Assessment) -> None:
 
 def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
     page = (paper.folder / "qualification.html").read_text(encoding="utf-8")
-    assert "<b>2 FAIL, 1 undecided</b>" in page
+    assert f"{MILITARY.title}: <b>2 FAIL, 1 undecided, 2 not run</b>" in page
+    assert "Tests of the standard that were not run: shock, 213 B, shock, 213 C." in page
     # Margins, sketch, sweeps, random vibration, shock, overtravel.
     assert page.count("<svg") == 6
     assert "4.8.10.2; shape of MIL-STD-202 method 214, from memory" in page
     assert "rms, duration read in the standard; density from memory" in page
     with (paper.folder / "qualification.csv").open(encoding="utf-8") as file:
-        assert {(row["test"], row["model"]): float(row["margin"]) for row in csv.DictReader(file)} == {
-            (part.first.test, each.model): pytest.approx(each.margin.margin, rel=1e-8)
-            for part in paper
-            for each in part.models
-        }
+        *rows, one, other = csv.DictReader(file)
+    assert {(row["test"], row["model"]): float(row["margin"]) for row in rows} == {
+        (part.first.test, each.model): pytest.approx(each.margin.margin, rel=1e-8)
+        for part in paper
+        for each in part.models
+    }
+    assert [row["test"] for row in (one, other)] == ["shock, 213 B", "shock, 213 C"]
+    assert one["verdict"] == other["verdict"] == "not run"
 
 
 def test_the_result_is_a_table_a_page_and_a_pdf(paper: Assessment) -> None:
     """Also in a notebook, which shows the page."""
     table, sine = paper.table, paper["vibration (sine)"]
-    assert list(table["model"]) == len(paper) * list(MODELS)
+    assert list(table["model"]) == [*len(paper) * list(MODELS), "", ""]
     assert table.attrs["units"]["closed contact least force"] == "N"
     assert table["margin"][0] == sine.margin.margin
     assert set(paper.sweeps["frequency"]) >= set(sine.margin.curves["frequency"])
@@ -435,6 +439,12 @@ def test_two_open_contacts_are_not_judged(tmp_path: Path) -> None:
     (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
     assert part.verdict == "not judged"
     assert "both contacts open" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+
+
+def test_the_command_tells_how_many_tests_were_not_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wanted = ["qualify", "paper", "--standard", "MIL-PRF-28776", "--test", "213 A", "--out", str(tmp_path)]
+    assert main(wanted) == 0
+    assert f"{MILITARY.title}: 1 FAIL, 4 not run\n" in capsys.readouterr().out
 
 
 def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -229,6 +229,8 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     absent = "Circuit of the coil, and case," if moved else "Armature, actuator, coil and case"
     left = [f"{absent} are not in the model: what they do to the contact is not in any verdict here.",
             "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
+    if standard.left:
+        left.insert(0, f"Tests of the standard that were not run: {', '.join(test.name for test in standard.left)}.")
     if not relay.axes:
         left.append("The other two axes of the relay: only the normal one is judged, as the relay's file has no "
                     "participations of the modes in others.")  # fmt: skip
@@ -253,7 +255,6 @@ def versions(assessment: Assessment, component: Component) -> list[tuple[str, st
 def html(assessment: Assessment, component: Component, date: str) -> str:
     """Return the page."""
     relay, standard, tests = assessment.relay, assessment.standard, assessment.tests
-    counts = {verdict: sum(tested.verdict == verdict for tested in tests) for verdict in FILLS}
     judged, not_judged = scope(relay, standard)
     # The first of each kind.
     warned = {DIFFERENCE.sub("", text): text
@@ -261,7 +262,7 @@ def html(assessment: Assessment, component: Component, date: str) -> str:
     sources = [(test.name, str(test), test.clause, evidence_told(test.evidence)) for test in standard.tests]
     return pages.render(
         "qualification.html", title=f"{relay.title}: {standard.title}", relay=relay.title, standard=standard.title,
-        counts=", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count), date=date,
+        counts=assessment.counts, date=date,
         warnings=list(warned.values())[::-1], judged=judged, not_judged=not_judged,
         margins=pages.svg(plots.margins(tests)),
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],

@@ -4,7 +4,7 @@ import csv
 from dataclasses import field
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Verdict = Literal["pass", "FAIL", "undecided", "not judged"]
+NOT_RUN = "not run"
+"""Instead of the verdict, of tests of the standard that are not wanted."""
 TIMES = {CLOSED: "closed contact interrupted", OPEN: "open contact makes"}
 LEAST = {OPEN: "open contact least gap"} | {name: f"{name} least force" for name in (CLOSED, CORE, STOP, PUSHER)}
 UNITS = dict.fromkeys(LEAST, "N") | {OPEN: "m"}
@@ -182,8 +184,15 @@ class Assessment:
         raise KeyError(f"{name}: there are {', '.join(dict.fromkeys(each.first.test for each in self.tests))}")
 
     @property
+    def counts(self) -> str:
+        """How many tests have which verdict, and how many of the standard were not run."""
+        counts = {verdict: sum(tested.verdict == verdict for tested in self) for verdict in get_args(Verdict)}
+        counts[NOT_RUN] = len(self.standard.left)
+        return ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
+
+    @property
     def table(self) -> "pd.DataFrame":
-        """A row for each test, position and model; `attrs["units"]` has the units."""
+        """A row for each test, position and model, and for each test not run; `attrs["units"]` has the units."""
         return frame(*self.tested)
 
     @property
@@ -211,6 +220,9 @@ class Assessment:
                     row |= {LEAST[name]: value for name, value in judged.least.items()}
                     units |= {LEAST[name]: UNITS[name] for name in judged.least}
                 rows.append(row)
+        for test in self.standard.left:
+            told = {"test": test.name, "clause": test.clause, "level": str(test), "verdict": NOT_RUN}
+            rows.append(dict.fromkeys(FIELDS, "") | told)
         # Columns of parts that no relay here has would be empty.
         others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
