@@ -170,6 +170,9 @@ def test_an_entry_of_a_file_is_found_on_its_line(
 
 
 PAPER = 'title = "own"\n'
+SAMPLE = """[uncertainty]
+contact.overtravel = {distribution = "data", values = [2.9e-4, 2.95e-4, 3e-4, 3.05e-4, 3.1e-4]}
+"""
 HELD = """[pusher]
 position = 1e-2
 [armature]
@@ -232,6 +235,12 @@ corePosition = 1e-4
         ("uncertainty.tip.mass = {distribution = 'normal', part = 2.0}", "2: .*part: allowed is less than 1"),
         ("uncertainty.tip.mass = {distribution = 'gauss', part = 0.1}", "2: .*distribution: allowed is 'normal'"),
         ("uncertainty.tip.mass = {distribution = 'triangular', low = 0.1, mode = 0.0, high = 0.1}", "2: .*to rise"),
+        ("parameters.contact.overtravel = -3e-4\n" + SAMPLE, "4: uncertainty.*: .*, position 1 has -0.0003"),
+        (SAMPLE.replace("2.9", "-2.9"), "3: uncertainty.contact.overtravel: values of -0.000295 to 0.00031: .*"),
+        ("position = [{parameters.contact.overtravel = 3e-4}, {name = 'B'}]\n" + SAMPLE,
+         "4: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, B has 0.0002"),
+        ("model = [{}, {parameters.contact.overtravel = 2e-4}]\nparameters.contact.overtravel = 3e-4\n" + SAMPLE,
+         "2: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, model 2 has 0.0002"),
         ("uncertainty.tip.mass = 0.1\n[correlation]\nnames = ['tip.mas']\nmatrix = [[1.0]]", "4: correlation.names.1"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]", "4: correlation.matrix.1.2 = 2.0"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]", "2: correlation = .*symmetrical"),
