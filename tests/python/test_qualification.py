@@ -447,6 +447,22 @@ def test_the_command_tells_how_many_tests_were_not_run(tmp_path: Path, capsys: p
     assert f"{MILITARY.title}: 1 FAIL, 4 not run\n" in capsys.readouterr().out
 
 
+def test_a_relay_without_uncertainties_has_no_interval(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """And no chance of failing, however near the limit; a noise has that of its largest dip."""
+    relay = tmp_path / "relay.toml"
+    relay.write_text("parameters.contact.overtravel = 2.04e-4\n")
+    wanted = ["--test", "random", "--test", "213 B", "--out", str(tmp_path), "--quick"]
+    assert main(["qualify", str(relay), "--standard", "MIL-PRF-28776", *wanted]) == 0
+    assert capsys.readouterr().out.count("none stated") == 1
+    page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    assert page.count("<td>none stated</td>") == 2
+    assert "states neither uncertain parameters nor an allowance" in page
+    with (tmp_path / "qualification.csv").open(encoding="utf-8") as file:
+        noise, shock = list(csv.DictReader(file))[:2]
+    assert [shock[name] for name in ("low", "high", "chance", "chance low", "chance high")] == 5 * [""]
+    assert float(noise["low"]) < float(noise["margin"]) < float(noise["high"])
+
+
 def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["qualify", "paper", "--standard", "MIL-STD-202", "--test", "none", "--out", str(tmp_path)]) == 1
     assert "none: no test named so; there are 201A, 204 A" in capsys.readouterr().err

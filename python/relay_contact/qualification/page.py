@@ -28,6 +28,10 @@ ALONE = (
     "The interval covers the uncertain parameters and the allowance that the relay's file makes for what the model "
     "leaves out."
 )
+UNKNOWN = (
+    "The relay's file states neither uncertain parameters nor an allowance for what the model leaves out: verdicts are "
+    "those of the margins alone."
+)
 LAWS = {
     "Hertz": "Hertzian contact of smooth bodies",
     "Rough": "contact of rough surfaces, its stiffness the power {:g} of the force,",
@@ -178,13 +182,14 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     several = f"The margins of {count} models show how far another form of the model moves a margin."
     single = "One model is judged: how far another form of the model would move the margin is not known."
     told = several if count > 1 else single
+    covered = ALONE if relay.uncertainty or any(model.uncertainty for model in relay.models) else UNKNOWN
     cells = [
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
     notes = [f"{tested.first.named}: {note}" for tested in mine for note in tested.first.notes]
     context = {
-        "name": name, "rest": "", "sketch": "", "form": f"{ALONE} {told} Form of the model: {'; '.join(forms)}.",
+        "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {'; '.join(forms)}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,
         "figures": [pages.svg(figure) for figure in plots.position_figures(mine, assessment.standard.contacts)],
     }  # fmt: skip

@@ -99,6 +99,11 @@ class Margin:
     tolerance: tuple[float, float] | None = None
     """Margins by linear theory at the ends of the tolerance of a pulse."""
 
+    @property
+    def stated(self) -> bool:
+        """Whether something makes an interval: an uncertain parameter, an allowance, or the chance of a noise."""
+        return self.chance is not None and len(self.chance.effects) > 0
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -210,9 +215,9 @@ class Assessment:
                 row = {name: getattr(each, name) for name in (*FIELDS, "limits")}
                 row |= {"verdict of all models": tested.verdict}
                 if (judged := each.judged) is not None:
-                    row |= {"margin": judged.margin, "low": judged.low, "high": judged.high, "weakest": judged.weakest}
-                    if judged.chance:
-                        chance = judged.chance
+                    row |= {"margin": judged.margin, "weakest": judged.weakest}
+                    if judged.stated and (chance := judged.chance):
+                        row |= {"low": judged.low, "high": judged.high}
                         row |= {"chance": chance.failing, "chance low": chance.low, "chance high": chance.high}
                     row |= {"fails first": " and ".join(judged.decides), "resonance": judged.natural}
                     row |= {TIMES[name]: value for name, value in judged.failed.items() if name in TIMES}
