@@ -9,7 +9,7 @@ import matplotlib as mpl
 from relay_contact import pages
 from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
-from relay_contact.files import digest
+from relay_contact.files import digest, read_toml
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
@@ -76,7 +76,6 @@ PUSHERS = {"Prescribed": "pusher that stays where it is", MOVED: "armature that 
 SETTINGS = ("excitation.", "chatter.", "solver.")
 """Parameters that are not the relay's."""
 UNUSED = {
-    "beam.file": ("beam.length", "beam.width", "beam.thickness"),
     "effects.secondContact": ("second.",),
     "effects.friction": ("friction.", "effects.friction"),
     "effects.contactLaw": ("contact.stiffness",),
@@ -84,7 +83,13 @@ UNUSED = {
     "effects.pusher": ("pusher.", "armature.", "effects.pusher"),
     "fixed.file": ("fixed.",),
 }
-"""Parameters without effect where this one has a value, or where it has its start value."""
+"""Parameters without effect where this one has its start value."""
+NOT_USED = "not used"
+SECTION = ("beam.length", "beam.width", "beam.thickness")
+"""What a file of the spring takes the place of."""
+CARRIED = ("tip.mass", "tip.rotaryInertia", "pusher.position")
+MATERIAL = ("beam.youngsModulus", "beam.density")
+"""What modes have in them."""
 
 
 def form(component: Component, values: Values) -> str:
@@ -116,6 +121,15 @@ def columns_of(relay: Relay) -> dict[str, Values]:
     }  # fmt: skip
 
 
+def replaced(values: Values) -> tuple[str, ...]:
+    """Return the parameters that a file of the spring takes the place of."""
+    if not values.get("beam.file"):
+        return ()
+    by_modes = "mode" in read_toml(Path(str(values["beam.file"])))
+    # The spring of the fixed contact may be of that material.
+    return SECTION + CARRIED * by_modes + MATERIAL * (by_modes and not values.get("fixed.file"))
+
+
 def inputs(component: Component, relay: Relay) -> pages.Table:
     """Return a table of all parameters of the relay by position and model, with their uncertainties."""
     columns = columns_of(relay)
@@ -124,12 +138,13 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
     hidden: list[tuple[str, ...]] = [SETTINGS]
     for name, prefixes in UNUSED.items():
         used = any(values.get(name, component.start(name)) != component.start(name) for values in columns.values())
-        hidden += [prefixes] if used == (name == "beam.file") else []
+        hidden += [] if used else [prefixes]
+    without = [replaced(values) for values in columns.values()]
     found = []
     for name, variable in component.variables.items():
         if name in SPRING_FILES or (variable.causality != "parameter" and name not in own):
             continue
-        if name not in own and any(name.startswith(prefixes) for prefixes in hidden):
+        if name not in own and (any(map(name.startswith, hidden)) or all(name in names for names in without)):
             continue
 
         def text(value: Any, name: str = name) -> str:  # noqa: ANN401
@@ -140,7 +155,8 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
             return described[name].text(float(value)).strip() if name in described else f"{float(value):g}"
 
         distribution = relay.uncertainty.get(name)
-        cells = [text(values.get(name, component.start(name))) for values in columns.values()]
+        cells = [NOT_USED if name in names else text(values.get(name, component.start(name)))
+                 for names, values in zip(without, columns.values(), strict=True)]  # fmt: skip
         told = distribution.told(relay.value(component, name)) if distribution else ""
         found.append([name, *cells, told, "file" if name in own else "start"])
     for name, distribution in relay.uncertainty.items():
