@@ -251,7 +251,7 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     left = [f"{absent} are not in the model: what they do to the contact is not in any verdict here.",
             "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
     if standard.left:
-        left.insert(0, f"Tests of the standard that were not run: {', '.join(test.name for test in standard.left)}.")
+        left.insert(0, f"Tests of the standard that were not run: {'; '.join(test.name for test in standard.left)}.")
     if not relay.axes:
         left.append("The other two axes of the relay: only the normal one is judged, as the relay's file has no "
                     "participations of the modes in others.")  # fmt: skip
