@@ -49,6 +49,8 @@ def input_table(path: Path) -> dict[str, Array]:
         names = ", ".join(there + table.passed)
         allowed = f"time and one or more of {', '.join(name for name in INPUTS if name != 'time')}"
         raise table.wrong(f"columns {names}: not allowed, allowed is {allowed}")
+    if not table.lines:
+        raise table.wrong("no row below the names of the columns")
     table.ascending("time")
     return {name: table[name] for name in there}
 

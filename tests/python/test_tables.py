@@ -174,6 +174,7 @@ def test_inputs_of_the_scenes_included_cover_their_runs(name: str) -> None:
         ("time [ms],base.acceleration [mm]\n0,1\n", "column base.acceleration: unit mm: not allowed, allowed is m/s2"),
         ("time,base.aceleration [g]\n0,1\n", "column base.aceleration: unknown; did you mean base.acceleration"),
         ("time,level\n0,1\n", "columns time, level: not allowed, allowed is time and one or more of base.acceleration"),
+        ("time [ms],base.acceleration [g]\n", "csv:1: no row below the names of the columns"),
         ("base.acceleration [g],x\n0,1\n", "columns base.acceleration, x: not allowed, allowed is time and"),
         ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", ":4: column time: 0.1 ms: not allowed"),
     ],
