@@ -152,6 +152,8 @@ def qualify_relay(given: argparse.Namespace) -> None:
         for tested, mark in zip(found, marks, strict=True) for row in rows(tested)
     ]  # fmt: skip
     print_table([["position", *HEAD], *lines])
+    left = "; ".join(test.name for test in found.standard.left)
+    print(f"{found.standard.title}: {found.counts}{': ' if left else ''}{left}")
     print(*(UNREAD,) * any(marks), *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
 
 

@@ -4,7 +4,8 @@ The run is a table of `relay-contact run` with the column contact.resistance. Th
 `start` (or `time`) and `duration` of interruptions, as a chatter detector logs them, or `time` and `resistance`.
 """
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 RESISTANCES = {"Ohm": 1.0, "ohm": 1.0, "mOhm": 1e-3, "kOhm": 1e3, "\N{GREEK CAPITAL LETTER OMEGA}": 1.0}
 COLUMNS: Units = {"start": TIMES, "time": TIMES, "duration": TIMES, "resistance": RESISTANCES}
-RESISTANCE = "contact.resistance"
+RESISTANCE, COUNT = "contact.resistance", "chatter.count"
 HEAD = ("interruptions", "simulated", "measured", "simulated / measured")
 SIMULATED, MEASURED = "simulated", "measured"
 FILES = ("comparison.csv", "comparison.png")
@@ -36,11 +37,15 @@ class Interruptions:
     duration: Array
     time: Array
     resistance: Array
+    counted: int = 0
+    """How many the component counted itself, if the table has it."""
 
     @property
     def figures(self) -> dict[str, float]:
-        """Return number, longest, median and total duration (s)."""
+        """Return number, longest, median and total duration (s); not durations where more were counted than seen."""
         some = len(self.duration) > 0
+        if self.counted > len(self.duration):
+            return {"count": float(self.counted)} | dict.fromkeys(("longest", "median", "total"), math.nan)
         return {
             "count": float(len(self.duration)), "longest": float(self.duration.max()) if some else 0.0,
             "median": float(np.median(self.duration)) if some else 0.0, "total": float(self.duration.sum()),
@@ -63,7 +68,10 @@ class Comparison:
         for name, own in self.simulated.figures.items():
             other = self.measured.figures[name]
             told = [f"{each:.0f}" if name == "count" else f"{three(1e6 * each)} µs" for each in (own, other)]
-            found.append([name, *told, three(own / other) if other else ""])
+            if math.isnan(own):
+                found.append([name, "unknown", told[1], ""])
+            else:
+                found.append([name, *told, three(own / other) if other else ""])
         return found
 
     @property
@@ -98,7 +106,8 @@ def simulated(path: Path, threshold: float) -> Interruptions:
     columns = read_table(path)
     if not {"time", RESISTANCE} <= columns.keys():
         raise RelayContactError(f"{path}: no columns time and {RESISTANCE}: run it with --output {RESISTANCE}")
-    return interruptions(columns["time"], columns[RESISTANCE], threshold)
+    counted = int(columns[COUNT][-1]) if COUNT in columns else 0
+    return replace(interruptions(columns["time"], columns[RESISTANCE], threshold), counted=counted)
 
 
 def measured(path: Path, threshold: float) -> Interruptions:
@@ -125,9 +134,14 @@ def compare(
     """
     own, other = simulated(run, threshold), measured(log, threshold)
     notes = []
-    steps = np.diff(own.time)
-    if len(own.duration) and own.duration.min() < 10 * steps.max():
-        notes.append(f"The run has a value every {three(1e6 * steps.max())} µs: shorter steps tell durations better.")
+    shortest = min((*own.duration, *other.duration), default=0.0)
+    for name, times in (("run", own.time), ("measurement", other.time)):
+        step = np.diff(times).max(initial=0.0)
+        if shortest < 10 * step:
+            text = "shorter steps tell interruptions better"
+            notes.append(f"The {name} has a value every {three(1e6 * step)} µs: {text}.")
+    if own.counted > len(own.duration):
+        notes.append(f"The component counted {own.counted} interruptions, the resistance shows {len(own.duration)}.")
     if shift is None:
         some = len(own.start) and len(other.start)
         shift = float(own.start[0] - other.start[0]) if some else 0.0

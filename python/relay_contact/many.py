@@ -116,9 +116,7 @@ def run_many(
             changed |= {component.settable(name): value for name, value in changes.items()}
             scene = (given if isinstance(given, Scene) else read(given)).changed(component, changes)
             points = scene.points()
-            inputs = scene.inputs(points)
-            first = {name: float(course[0]) for name, course in inputs.items()}
-            with component.started(scene.values | first) as contact, contact.explained():
+            with scene.started(component, points) as (contact, inputs):
                 contact.drive(points, inputs)
                 found |= {name: contact.get(name) for name in names or map(component.name, scene.outputs)}
                 told["warning"] = " ".join(contact.warnings)

@@ -2,19 +2,21 @@
 
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Self
 
 import numpy as np
+from fmpy.fmi2 import fmi2Warning
 from numpy.lib.recfunctions import unstructured_to_structured
 from numpy.typing import ArrayLike
 from pydantic import ConfigDict, Field
 from pydantic.alias_generators import to_camel
 from tqdm import tqdm
 
-from relay_contact.component import Array, Component, Value, nearest, units
+from relay_contact.component import Array, Component, Contact, Value, nearest, units
 from relay_contact.files import RelayContactError, named, scenes
 from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
 from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, RATIOS, TIMES, Units
@@ -22,6 +24,8 @@ from relay_contact.tables import read as read_columns
 
 MOST = 10**7
 """Communication steps of a run, whose rows stay in memory."""
+LONG = 100
+"""Times the stop, from which on a table may have its time in another unit."""
 INPUTS: Units = {
     "time": TIMES, "base.acceleration": ACCELERATIONS, "support.displacement": LENGTHS, "second.displacement": LENGTHS,
     "pusher.displacement": LENGTHS, "coil.relativeCurrent": RATIOS,
@@ -45,6 +49,8 @@ def input_table(path: Path) -> dict[str, Array]:
         names = ", ".join(there + table.passed)
         allowed = f"time and one or more of {', '.join(name for name in INPUTS if name != 'time')}"
         raise table.wrong(f"columns {names}: not allowed, allowed is {allowed}")
+    if not table.lines:
+        raise table.wrong("no row below the names of the columns")
     table.ascending("time")
     return {name: table[name] for name in there}
 
@@ -124,6 +130,36 @@ class Scene:
         return {
             name: np.interp(points, self.table["time"], column) for name, column in self.table.items() if name != "time"
         }
+
+    def uncovered(self) -> list[str]:
+        """Return in words where the table does not cover the run; refuse one that has rows between all points."""
+        if len(self.table) < 2:
+            return []
+        time, stop = self.table["time"], self.stop
+        begin, end, spacing = time[0], time[-1], np.diff(time).min(initial=math.inf)
+        if begin >= stop or end < 0:
+            text = f"not allowed, the run is from 0 to {stop:g} s"
+            raise RelayContactError(f"inputs: time = {begin:g} to {end:g} s: {text}")
+        # Times of a recorder are rounded.
+        if self.step > 1.01 * spacing:
+            text = f"allowed is at most {spacing:g} s, the shortest time between rows of the inputs"
+            raise RelayContactError(f"communication step = {self.step:g} s: not allowed, {text}")
+        told = {
+            f"inputs begin at {begin:g} s: before, their first values are held": begin > 1.01 * spacing,
+            f"inputs end at {end:g} s, the run at {stop:g} s: their last values are held": stop - end > 1.01 * spacing,
+            f"inputs end at {end:g} s, the run at {stop:g} s: is their time in s?": end > LONG * stop,
+        }
+        return [text for text, true in told.items() if true]
+
+    @contextmanager
+    def started(self, component: Component, points: Array) -> Iterator[tuple[Contact, dict[str, Array]]]:
+        """Give an instance at the begin of the run, which warns of what the table does not cover, and the inputs."""
+        uncovered, inputs = self.uncovered(), self.inputs(points)
+        first = {name: float(course[0]) for name, course in inputs.items()}
+        with component.started(self.values | first) as contact, contact.explained():
+            for text in uncovered:
+                contact.keep(fmi2Warning, text)
+            yield contact, inputs
 
     def changed(self, component: Component, changes: Mapping[str, Value]) -> Self:
         """Return the scene with other parameters and inputs; an input of the table is then constant, too."""
@@ -240,9 +276,7 @@ def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, A
 
 def simulated(scene: Scene, time: Array, component: Component, tell: Callable[[float], object]) -> Array:
     """Run a scene; return a row of time and outputs for each communication point."""
-    inputs = scene.inputs(time)
-    first = {name: float(course[0]) for name, course in inputs.items()}
-    with component.started(scene.values | first) as contact, contact.explained():
+    with scene.started(component, time) as (contact, inputs):
         rows = [np.array([[0.0, *(contact.get(name) for name in scene.outputs)]])]
         for begin in range(0, len(time) - 1, SHOWN):
             part = slice(begin, begin + SHOWN + 1)

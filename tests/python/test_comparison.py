@@ -62,6 +62,28 @@ def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:
     assert found.rows[3][3] == "1.11"
 
 
+def test_interruptions_between_the_values_of_a_run(tmp_path: Path) -> None:
+    """Every 0.5 ms one sees none of the three, which the component counts."""
+    table, log = tmp_path / "run.csv", tmp_path / "log.csv"
+    coarse, whole = slice(375, None, 500), np.interp(TIME, STARTS, [1, 2, 3], left=0).astype(int)
+    columns = np.column_stack((TIME, resistance(0.0, 1.0), whole))[coarse]
+    log.write_text("start [ms],duration [us]\n1,100\n3,40\n6.5,250\n")
+    for count in (2, 3):
+        np.savetxt(table, columns[:, :count], delimiter=",", comments="",
+                   header=",".join(("time", "contact.resistance", "chatter.count")[:count]))  # fmt: skip
+        found = compare(table, log)
+        assert found.notes[0] == "The run has a value every 500 µs: shorter steps tell interruptions better."
+        assert found.rows[0] == ["count", *(("0", "3", "0") if count == 2 else ("3", "3", "1.00"))]
+        assert found.rows[1][1:] == (["0 µs", "250 µs", "0"] if count == 2 else ["unknown", "250 µs", ""])
+    assert found.notes[1] == "The component counted 3 interruptions, the resistance shows 0."
+    # The other way around, and where neither has any.
+    log.write_text("time [ms],resistance [Ohm]\n0,0.05\n10,0.05\n")
+    assert [compare(table, log).notes[at] for at in (0, 1)] == [
+        f"The {name} has a value every {step} µs: shorter steps tell interruptions better."
+        for name, step in (("run", 500), ("measurement", 10000))
+    ]
+
+
 def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     log.write_text("start [ms],length [us]\n1,2\n")

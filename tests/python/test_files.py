@@ -170,6 +170,9 @@ def test_an_entry_of_a_file_is_found_on_its_line(
 
 
 PAPER = 'title = "own"\n'
+SAMPLE = """[uncertainty]
+contact.overtravel = {distribution = "data", values = [2.9e-4, 2.95e-4, 3e-4, 3.05e-4, 3.1e-4]}
+"""
 HELD = """[pusher]
 position = 1e-2
 [armature]
@@ -232,6 +235,12 @@ corePosition = 1e-4
         ("uncertainty.tip.mass = {distribution = 'normal', part = 2.0}", "2: .*part: allowed is less than 1"),
         ("uncertainty.tip.mass = {distribution = 'gauss', part = 0.1}", "2: .*distribution: allowed is 'normal'"),
         ("uncertainty.tip.mass = {distribution = 'triangular', low = 0.1, mode = 0.0, high = 0.1}", "2: .*to rise"),
+        ("parameters.contact.overtravel = -3e-4\n" + SAMPLE, "4: uncertainty.*: .*, position 1 has -0.0003"),
+        (SAMPLE.replace("2.9", "-2.9"), "3: uncertainty.contact.overtravel: values of -0.000295 to 0.00031: .*"),
+        ("position = [{parameters.contact.overtravel = 3e-4}, {name = 'B'}]\n" + SAMPLE,
+         "4: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, B has 0.0002"),
+        ("model = [{}, {parameters.contact.overtravel = 2e-4}]\nparameters.contact.overtravel = 3e-4\n" + SAMPLE,
+         "2: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, model 2 has 0.0002"),
         ("uncertainty.tip.mass = 0.1\n[correlation]\nnames = ['tip.mas']\nmatrix = [[1.0]]", "4: correlation.names.1"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]", "4: correlation.matrix.1.2 = 2.0"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]", "2: correlation = .*symmetrical"),
@@ -375,6 +384,9 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": [], "base.acceleration": []}}, "finite numbers"),
         ({"inputs": {"time": ["a"], "base.acceleration": [0.0]}}, "time: not allowed, allowed are numbers"),
         ({"inputs": {"time": [0.0], "tip.mass": [1e-5]}}, "tip.mass: not an input"),
+        ({"inputs": {"time": [9.0, 9.1], "base.acceleration": 2 * [0.0]}}, "time = 9 to 9.1 s: not allowed, .* 0 to 0"),
+        ({"inputs": {"time": [-2.0, -1.0], "base.acceleration": 2 * [0.0]}}, "time = -2 to -1 s: not allowed"),
+        ({"inputs": {"time": [0.0, 9e-6, 1.0], "base.acceleration": 3 * [0.0]}}, "step = 1e-05 s: .* at most 9e-06 s"),
         ({"inputs": {"time": [0.0], "base.acceleration": [0.0]}, "base.acceleration": 1.0}, "given twice"),
         ({"spring.thickness": "thick"}, "no such variable"),
         ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),

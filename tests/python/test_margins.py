@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from component import COMPONENT
+from component import COMPONENT, ROOT
 from qualified import CONTACTS, described, judged, placed
 from relay_contact import RelayContactWarning, Values, run
 from relay_contact.figures import three
@@ -18,7 +18,7 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
-from relay_contact.qualification.page import write
+from relay_contact.qualification.page import inputs, write
 from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
@@ -264,7 +264,24 @@ def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.Mo
     )
     (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
     assert len([text for text in part.first.warnings if "not used" in text]) == 1
-    assert "not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    assert "0.000123 m: not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+def test_inputs_that_a_spring_file_has_in_it_are_not_used(tmp_path: Path) -> None:
+    modes, segments = (ROOT / f"scenes/springs/{name}.toml" for name in ("tapered-cube-modes", "tapered-cube"))
+    relay = tmp_path / "relay.toml"
+    relay.write_text(
+        "parameters.tip.mass = 1e-5\nparameters.beam.thickness = 1e-4\n"
+        f"position = [{{parameters.beam.file = '{modes}'}}, {{parameters.beam.file = '{segments}'}}]\n"
+    )
+    names = ("beam.length", "beam.thickness", "beam.density", "tip.mass", "tip.rotaryInertia")
+    own, shipped = (inputs(COMPONENT, Relay.read(path, COMPONENT))[1] for path in (relay, "finite-elements"))
+    assert {row[0]: row[1:3] for row in own if row[0] in names} == {
+        "beam.thickness": ["not used", "not used"], "beam.density": ["not used", "8300 kg/m³"],
+        "tip.mass": ["not used", "10 mg"], "tip.rotaryInertia": ["not used", "0 kg.m2"],
+    }  # fmt: skip
+    assert not {row[0] for row in shipped} & {*names}
 
 
 @pytest.mark.parametrize(

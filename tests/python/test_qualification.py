@@ -1,9 +1,12 @@
 """`qualify` against closed forms, the exact linear beam and finite elements; what a kill may not change."""
 
 import csv
+import re
+import runpy
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -249,23 +252,27 @@ def test_margins_over_the_overtravel(paper: Assessment) -> None:
 
 def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
     page = (paper.folder / "qualification.html").read_text(encoding="utf-8")
-    assert "<b>2 FAIL, 1 undecided</b>" in page
+    assert f"{MILITARY.title}: <b>2 FAIL, 1 undecided, 2 not run</b>" in page
+    assert "Tests of the standard that were not run: shock, 213 B; shock, 213 C." in page
     # Margins, sketch, sweeps, random vibration, shock, overtravel.
     assert page.count("<svg") == 6
     assert "4.8.10.2; shape of MIL-STD-202 method 214, from memory" in page
     assert "rms, duration read in the standard; density from memory" in page
     with (paper.folder / "qualification.csv").open(encoding="utf-8") as file:
-        assert {(row["test"], row["model"]): float(row["margin"]) for row in csv.DictReader(file)} == {
-            (part.first.test, each.model): pytest.approx(each.margin.margin, rel=1e-8)
-            for part in paper
-            for each in part.models
-        }
+        *rows, one, other = csv.DictReader(file)
+    assert {(row["test"], row["model"]): float(row["margin"]) for row in rows} == {
+        (part.first.test, each.model): pytest.approx(each.margin.margin, rel=1e-8)
+        for part in paper
+        for each in part.models
+    }
+    assert [row["test"] for row in (one, other)] == ["shock, 213 B", "shock, 213 C"]
+    assert one["verdict"] == other["verdict"] == "not run"
 
 
 def test_the_result_is_a_table_a_page_and_a_pdf(paper: Assessment) -> None:
     """Also in a notebook, which shows the page."""
     table, sine = paper.table, paper["vibration (sine)"]
-    assert list(table["model"]) == len(paper) * list(MODELS)
+    assert list(table["model"]) == [*len(paper) * list(MODELS), "", ""]
     assert table.attrs["units"]["closed contact least force"] == "N"
     assert table["margin"][0] == sine.margin.margin
     assert set(paper.sweeps["frequency"]) >= set(sine.margin.curves["frequency"])
@@ -435,6 +442,57 @@ def test_two_open_contacts_are_not_judged(tmp_path: Path) -> None:
     (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
     assert part.verdict == "not judged"
     assert "both contacts open" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+
+
+def test_the_command_tells_how_many_tests_were_not_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wanted = ["qualify", "paper", "--standard", "MIL-PRF-28776", "--test", "213 A", "--out", str(tmp_path)]
+    assert main(wanted) == 0
+    left = "vibration (sine); vibration (random), 214 G; shock, 213 B; shock, 213 C"
+    assert f"{MILITARY.title}: 1 FAIL, 4 not run: {left}\n" in capsys.readouterr().out
+
+
+def test_a_relay_without_uncertainties_has_no_interval(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """And no chance of failing, however near the limit; a noise has that of its largest dip."""
+    relay = tmp_path / "relay.toml"
+    relay.write_text("parameters.contact.overtravel = 2.04e-4\n")
+    wanted = ["--test", "random", "--test", "213 B", "--out", str(tmp_path), "--quick"]
+    assert main(["qualify", str(relay), "--standard", "MIL-PRF-28776", *wanted]) == 0
+    assert capsys.readouterr().out.count("none stated") == 1
+    page = (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    assert page.count("<td>none stated</td>") == 2
+    assert "states neither uncertain parameters nor an allowance" in page
+    with (tmp_path / "qualification.csv").open(encoding="utf-8") as file:
+        noise, shock = list(csv.DictReader(file))[:2]
+    assert [shock[name] for name in ("low", "high", "chance", "chance low", "chance high")] == 5 * [""]
+    assert float(noise["low"]) < float(noise["margin"]) < float(noise["high"])
+
+
+def alike(told: str, printed: str) -> bool:
+    """Return whether two texts differ by no more than the last digits of their numbers, as machines may."""
+    number = re.compile(r"\d+(?:\.\d+)?")
+    pairs = zip(*(map(Decimal, number.findall(text)) for text in (told, printed)), strict=False)
+    last = all(abs(one - other) <= Decimal(1).scaleb(int(one.as_tuple().exponent)) for one, other in pairs)
+    return last and number.sub("#", told) == number.sub("#", printed)
+
+
+def test_the_commands_of_own_spring_print_what_the_page_says(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What has the same name in the table; the page shows fewer of its columns."""
+    page = (ROOT / "docs/own-spring.md").read_text(encoding="utf-8")
+    spring, script, forces, relay, verdicts = re.findall(r"(?s)```\w+\n(.*?)```", page)
+    monkeypatch.chdir(tmp_path)
+    for name, text in (("my-spring.toml", spring), ("my_spring.py", script), ("my-relay.toml", relay)):
+        Path(name).write_text(text, encoding="utf-8")
+    runpy.run_path("my_spring.py", run_name="__main__")
+    assert alike(forces, capsys.readouterr().out)
+    assert main(["qualify", "my-relay.toml", "--standard", "MIL-PRF-28776", "--quick"]) == 0
+    told, printed = (
+        [re.split(" {2,}", line) for line in text.splitlines()] for text in (verdicts, capsys.readouterr().out)
+    )
+    for own, row in zip(told, printed[: len(told)], strict=True):
+        found = dict(zip(printed[0], row, strict=True))
+        assert [name for name, cell in zip(told[0], own, strict=True) if not alike(cell, found[name])] == []
 
 
 def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from component import COMPONENT
-from relay_contact import RelayContactError, run
+from relay_contact import RelayContactError, Scene, run, run_many, scenes
 from relay_contact.figures import GRAVITY
 from relay_contact.identification.measurement import COLUMNS
 from relay_contact.identification.measurement import read as read_measurement
@@ -138,11 +138,43 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        (np.arange(5.0), []),  # each row lasts until the next
+        ([1.0, 1.5, 5.0], ["inputs begin at 0.001 s: before, their first values are held"]),
+        ([-1.0, 0.0, 1.0], ["inputs end at 0.001 s, the run at 0.005 s: their last values are held"]),
+        ([0.0, 1000.0], ["inputs end at 1 s, the run at 0.005 s: is their time in s?"]),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+def test_a_run_warns_of_inputs_that_do_not_cover_it(rows: list[float], told: list[str]) -> None:
+    table = {"time": 1e-3 * np.array(rows), "base.acceleration": np.zeros(len(rows))}
+    scene = Scene("", 5e-3, 1e-5, ["contact.force"], {}, table)
+    assert run(scene, component=COMPONENT).warnings == told
+    many = run_many([scene, (scene, {"base.acceleration": 0.0})], component=COMPONENT)
+    assert many["warning"].tolist() == [" ".join(told), ""]
+
+
+def test_inputs_with_rows_that_the_run_would_pass_over_are_refused_in_its_row() -> None:
+    table = {"time": np.array([0.0, 1e-3, 2e-3]), "base.acceleration": np.zeros(3)}
+    cases = [Scene("", 5e-3, step, ["contact.force"], {}, table) for step in (1e-3, 1.02e-3)]
+    errors = run_many(cases, component=COMPONENT)["error"].tolist()
+    assert errors[0] == ""
+    assert errors[1].startswith("communication step = 0.00102 s: not allowed, allowed is at most 0.001 s")
+
+
+@pytest.mark.parametrize("name", [name for name, path in scenes().items() if "file = " in path.read_text("utf-8")])
+def test_inputs_of_the_scenes_included_cover_their_runs(name: str) -> None:
+    assert Scene.read(name).uncovered() == []
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("time [ms],base.acceleration [mm]\n0,1\n", "column base.acceleration: unit mm: not allowed, allowed is m/s2"),
         ("time,base.aceleration [g]\n0,1\n", "column base.aceleration: unknown; did you mean base.acceleration"),
         ("time,level\n0,1\n", "columns time, level: not allowed, allowed is time and one or more of base.acceleration"),
+        ("time [ms],base.acceleration [g]\n", "csv:1: no row below the names of the columns"),
         ("base.acceleration [g],x\n0,1\n", "columns base.acceleration, x: not allowed, allowed is time and"),
         ("time [ms],base.acceleration [g]\n0,1\n0.2,1\n0.1,1\n", ":4: column time: 0.1 ms: not allowed"),
     ],

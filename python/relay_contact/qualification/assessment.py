@@ -180,6 +180,5 @@ def chosen(standard: Standard, texts: list[str]) -> Standard:
         if not tests:
             names = ", ".join(test.name for test in standard.tests)
             raise RelayContactError(f"{text}: no test named so; there are {names}")
-    return replace(
-        standard, tests=tuple(test for test in standard.tests if any(test in each for each in found.values()))
-    )
+    wanted = tuple(test for test in standard.tests if any(test in each for each in found.values()))
+    return replace(standard, tests=wanted, left=tuple(test for test in standard.tests if test not in wanted))

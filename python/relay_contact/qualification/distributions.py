@@ -9,6 +9,7 @@ from pydantic import Field, TypeAdapter, ValidationError, model_validator
 from pydantic.dataclasses import dataclass
 
 from relay_contact.component import Array
+from relay_contact.files import RelayContactError
 from relay_contact.schema import STRICT, Table, within
 
 # scipy has them too, and takes longer to import than a test.
@@ -76,6 +77,15 @@ class Distribution:
             case "data":
                 found = np.quantile(np.array(self.values), chance, method="hazen") / value
         return np.maximum(found, LEAST)
+
+    def check(self, name: str, value: float, where: str) -> None:
+        """Refuse a sample in whose range the value of the parameter is not, or that has another sign."""
+        if not self.values:
+            return
+        low, high = min(self.values), max(self.values)
+        if not low <= value <= high or low * value <= 0 or high * value <= 0:
+            text = f"not allowed, {where} has {value:g}, which has to be among them, and all of the same sign"
+            raise RelayContactError(f"uncertainty.{name}: values of {low:g} to {high:g}: {text}")
 
     def half(self, value: float) -> float:
         """Return half of the interval of 95 %, as a part of the value."""

@@ -9,7 +9,7 @@ import matplotlib as mpl
 from relay_contact import pages
 from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
-from relay_contact.files import digest
+from relay_contact.files import digest, read_toml
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
@@ -27,6 +27,10 @@ PDF = "qualification.pdf"
 ALONE = (
     "The interval covers the uncertain parameters and the allowance that the relay's file makes for what the model "
     "leaves out."
+)
+UNKNOWN = (
+    "The relay's file states neither uncertain parameters nor an allowance for what the model leaves out: verdicts are "
+    "those of the margins alone."
 )
 LAWS = {
     "Hertz": "Hertzian contact of smooth bodies",
@@ -72,7 +76,6 @@ PUSHERS = {"Prescribed": "pusher that stays where it is", MOVED: "armature that 
 SETTINGS = ("excitation.", "chatter.", "solver.")
 """Parameters that are not the relay's."""
 UNUSED = {
-    "beam.file": ("beam.length", "beam.width", "beam.thickness"),
     "effects.secondContact": ("second.",),
     "effects.friction": ("friction.", "effects.friction"),
     "effects.contactLaw": ("contact.stiffness",),
@@ -80,7 +83,13 @@ UNUSED = {
     "effects.pusher": ("pusher.", "armature.", "effects.pusher"),
     "fixed.file": ("fixed.",),
 }
-"""Parameters without effect where this one has a value, or where it has its start value."""
+"""Parameters without effect where this one has its start value."""
+NOT_USED = "not used"
+SECTION = ("beam.length", "beam.width", "beam.thickness")
+"""What a file of the spring takes the place of."""
+CARRIED = ("tip.mass", "tip.rotaryInertia", "pusher.position")
+MATERIAL = ("beam.youngsModulus", "beam.density")
+"""What modes have in them."""
 
 
 def form(component: Component, values: Values) -> str:
@@ -112,6 +121,15 @@ def columns_of(relay: Relay) -> dict[str, Values]:
     }  # fmt: skip
 
 
+def replaced(values: Values) -> tuple[str, ...]:
+    """Return the parameters that a file of the spring takes the place of."""
+    if not values.get("beam.file"):
+        return ()
+    by_modes = "mode" in read_toml(Path(str(values["beam.file"])))
+    # The spring of the fixed contact may be of that material.
+    return SECTION + CARRIED * by_modes + MATERIAL * (by_modes and not values.get("fixed.file"))
+
+
 def inputs(component: Component, relay: Relay) -> pages.Table:
     """Return a table of all parameters of the relay by position and model, with their uncertainties."""
     columns = columns_of(relay)
@@ -120,12 +138,13 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
     hidden: list[tuple[str, ...]] = [SETTINGS]
     for name, prefixes in UNUSED.items():
         used = any(values.get(name, component.start(name)) != component.start(name) for values in columns.values())
-        hidden += [prefixes] if used == (name == "beam.file") else []
+        hidden += [] if used else [prefixes]
+    without = [replaced(values) for values in columns.values()]
     found = []
     for name, variable in component.variables.items():
         if name in SPRING_FILES or (variable.causality != "parameter" and name not in own):
             continue
-        if name not in own and any(name.startswith(prefixes) for prefixes in hidden):
+        if name not in own and (any(map(name.startswith, hidden)) or all(name in names for names in without)):
             continue
 
         def text(value: Any, name: str = name) -> str:  # noqa: ANN401
@@ -136,7 +155,8 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
             return described[name].text(float(value)).strip() if name in described else f"{float(value):g}"
 
         distribution = relay.uncertainty.get(name)
-        cells = [text(values.get(name, component.start(name))) for values in columns.values()]
+        cells = [NOT_USED if name in names else text(values.get(name, component.start(name)))
+                 for names, values in zip(without, columns.values(), strict=True)]  # fmt: skip
         told = distribution.told(relay.value(component, name)) if distribution else ""
         found.append([name, *cells, told, "file" if name in own else "start"])
     for name, distribution in relay.uncertainty.items():
@@ -178,13 +198,14 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     several = f"The margins of {count} models show how far another form of the model moves a margin."
     single = "One model is judged: how far another form of the model would move the margin is not known."
     told = several if count > 1 else single
+    covered = ALONE if relay.uncertainty or any(model.uncertainty for model in relay.models) else UNKNOWN
     cells = [
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
     notes = [f"{tested.first.named}: {note}" for tested in mine for note in tested.first.notes]
     context = {
-        "name": name, "rest": "", "sketch": "", "form": f"{ALONE} {told} Form of the model: {'; '.join(forms)}.",
+        "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {'; '.join(forms)}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,
         "figures": [pages.svg(figure) for figure in plots.position_figures(mine, assessment.standard.contacts)],
     }  # fmt: skip
@@ -229,6 +250,8 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     absent = "Circuit of the coil, and case," if moved else "Armature, actuator, coil and case"
     left = [f"{absent} are not in the model: what they do to the contact is not in any verdict here.",
             "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
+    if standard.left:
+        left.insert(0, f"Tests of the standard that were not run: {'; '.join(test.name for test in standard.left)}.")
     if not relay.axes:
         left.append("The other two axes of the relay: only the normal one is judged, as the relay's file has no "
                     "participations of the modes in others.")  # fmt: skip
@@ -253,7 +276,6 @@ def versions(assessment: Assessment, component: Component) -> list[tuple[str, st
 def html(assessment: Assessment, component: Component, date: str) -> str:
     """Return the page."""
     relay, standard, tests = assessment.relay, assessment.standard, assessment.tests
-    counts = {verdict: sum(tested.verdict == verdict for tested in tests) for verdict in FILLS}
     judged, not_judged = scope(relay, standard)
     # The first of each kind.
     warned = {DIFFERENCE.sub("", text): text
@@ -261,7 +283,7 @@ def html(assessment: Assessment, component: Component, date: str) -> str:
     sources = [(test.name, str(test), test.clause, evidence_told(test.evidence)) for test in standard.tests]
     return pages.render(
         "qualification.html", title=f"{relay.title}: {standard.title}", relay=relay.title, standard=standard.title,
-        counts=", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count), date=date,
+        counts=assessment.counts, date=date,
         warnings=list(warned.values())[::-1], judged=judged, not_judged=not_judged,
         margins=pages.svg(plots.margins(tests)),
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],

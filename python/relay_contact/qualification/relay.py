@@ -150,6 +150,8 @@ class Relay:
                 raise schema.refused(path, place, name, f"has the parameters of {twin}")
             models[name] = Model(name, changed, rival.uncertainty)
             with schema.at(path, *place):
+                for uncertain in changed.keys() & uncertainty.keys():
+                    uncertainty[uncertain].check(uncertain, component.value(changed, uncertain), name)
                 for values in positions.values():
                     blow(component, {**values, **changed})
                     check_held(component, {**values, **changed})
@@ -258,8 +260,10 @@ def uncertainties(
             for position, values in positions.items():
                 start = component.value(values, name)
                 ends = [start, start] if not start else start * distribution.factor(distributions.SCORES, start)
-                for end in ends:
-                    used.append(blow(component, values, {name: float(end)}) != rest[position])
+                mine = [blow(component, values, {name: float(end)}) != rest[position] for end in ends]
+                if any(mine):
+                    distribution.check(name, start, position)
+                used += mine
             if not any(used):
                 raise RelayContactError(
                     f"{schema.dotted(place)}: not used, {name} changes nothing in this relay, or it is 0"

@@ -4,7 +4,7 @@ import csv
 from dataclasses import field
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Verdict = Literal["pass", "FAIL", "undecided", "not judged"]
+NOT_RUN = "not run"
+"""Instead of the verdict, of tests of the standard that are not wanted."""
 TIMES = {CLOSED: "closed contact interrupted", OPEN: "open contact makes"}
 LEAST = {OPEN: "open contact least gap"} | {name: f"{name} least force" for name in (CLOSED, CORE, STOP, PUSHER)}
 UNITS = dict.fromkeys(LEAST, "N") | {OPEN: "m"}
@@ -96,6 +98,11 @@ class Margin:
     """The margins of each part, of a relay that has others than its contacts; the least is that of the relay."""
     tolerance: tuple[float, float] | None = None
     """Margins by linear theory at the ends of the tolerance of a pulse."""
+
+    @property
+    def stated(self) -> bool:
+        """Whether something makes an interval: an uncertain parameter, an allowance, or the chance of a noise."""
+        return self.chance is not None and len(self.chance.effects) > 0
 
 
 @dataclass(frozen=True)
@@ -182,8 +189,15 @@ class Assessment:
         raise KeyError(f"{name}: there are {', '.join(dict.fromkeys(each.first.test for each in self.tests))}")
 
     @property
+    def counts(self) -> str:
+        """How many tests have which verdict, and how many of the standard were not run."""
+        counts = {verdict: sum(tested.verdict == verdict for tested in self) for verdict in get_args(Verdict)}
+        counts[NOT_RUN] = len(self.standard.left)
+        return ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
+
+    @property
     def table(self) -> "pd.DataFrame":
-        """A row for each test, position and model; `attrs["units"]` has the units."""
+        """A row for each test, position and model, and for each test not run; `attrs["units"]` has the units."""
         return frame(*self.tested)
 
     @property
@@ -201,9 +215,9 @@ class Assessment:
                 row = {name: getattr(each, name) for name in (*FIELDS, "limits")}
                 row |= {"verdict of all models": tested.verdict}
                 if (judged := each.judged) is not None:
-                    row |= {"margin": judged.margin, "low": judged.low, "high": judged.high, "weakest": judged.weakest}
-                    if judged.chance:
-                        chance = judged.chance
+                    row |= {"margin": judged.margin, "weakest": judged.weakest}
+                    if judged.stated and (chance := judged.chance):
+                        row |= {"low": judged.low, "high": judged.high}
                         row |= {"chance": chance.failing, "chance low": chance.low, "chance high": chance.high}
                     row |= {"fails first": " and ".join(judged.decides), "resonance": judged.natural}
                     row |= {TIMES[name]: value for name, value in judged.failed.items() if name in TIMES}
@@ -211,6 +225,9 @@ class Assessment:
                     row |= {LEAST[name]: value for name, value in judged.least.items()}
                     units |= {LEAST[name]: UNITS[name] for name in judged.least}
                 rows.append(row)
+        for test in self.standard.left:
+            told = {"test": test.name, "clause": test.clause, "level": str(test), "verdict": NOT_RUN}
+            rows.append(dict.fromkeys(FIELDS, "") | told)
         # Columns of parts that no relay here has would be empty.
         others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]

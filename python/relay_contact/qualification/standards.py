@@ -96,6 +96,8 @@ class Standard:
     tests: tuple[excitation.Test, ...]
     digest: str = ""
     """Of the file."""
+    left: tuple[excitation.Test, ...] = ()
+    """Tests of the file that are not wanted."""
 
     @classmethod
     def read(cls, standard: str | Path) -> "Standard":

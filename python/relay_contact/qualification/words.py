@@ -20,6 +20,8 @@ MARKS: dict[str, str] = dict(zip(LEVELS, ("", "", " †", " *"), strict=True))
 """Of tests with numbers that were not read in the standard."""
 UNREAD = "† Read in a quotation of the standard. * From memory: not, or not all, read in the standard's text."
 TOLD = {MODEL: "allowance for the model", CHANCE: CHANCE}
+UNSTATED = "none stated"
+"""In place of an interval and a chance, where the relay's file has nothing that they could come from."""
 LEAST_SHARE = 0.01  # of the variance, below which a parameter is not named
 
 
@@ -75,7 +77,7 @@ def own_cells(finding: Finding) -> list[str]:
     # Of parts that are held in their own rows.
     left = [left_of(own, name) for name in own.least if name not in LEAVES]
     first = " and ".join(own.decides) or "none"
-    interval = f"{three(own.low)} to {three(own.high)}"
+    interval = f"{three(own.low)} to {three(own.high)}" if own.stated else UNSTATED
     return [finding.verdict, three(own.margin), interval, own.weakest, first, failures(own), ", ".join(left)]
 
 
@@ -90,7 +92,7 @@ def part_row(margin: Margin, name: str, part: PartMargin) -> list[str]:
     names = [each for each in (CLOSED, OPEN) if each in margin.least] if name == CONTACT else [name]
     told = [failure(margin, each) for each in names if each in margin.failed]
     left = [left_of(margin, each) for each in names]
-    shown, interval = three(part.margin), f"{three(part.low)} to {three(part.high)}"
+    shown, interval = three(part.margin), f"{three(part.low)} to {three(part.high)}" if margin.stated else UNSTATED
     if part.endless:
         shown, interval = f"> {MOST:g}", ""
     label = names[0] if name == CONTACT and len(names) == 1 else "contacts" if name == CONTACT else name
@@ -133,6 +135,8 @@ def ppm(share: float) -> str:
 
 def chance_text(chance: Chance) -> str:
     """Return the chance of failing with its own interval, in words."""
+    if not chance.effects:
+        return UNSTATED
     if chance.low == 0:
         return f"< {ppm(chance.high)}"
     if chance.high == 1:
