@@ -152,7 +152,8 @@ def qualify_relay(given: argparse.Namespace) -> None:
         for tested, mark in zip(found, marks, strict=True) for row in rows(tested)
     ]  # fmt: skip
     print_table([["position", *HEAD], *lines])
-    print(*(UNREAD,) * any(marks), *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
+    notes = dict.fromkeys(note for tested in found for note in tested.notes)
+    print(*(UNREAD,) * any(marks), *notes, *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
 
 
 def compare_runs(given: argparse.Namespace) -> None:

@@ -21,6 +21,10 @@ from relay_contact.tables import ACCELERATIONS, TIMES, spelled
 
 EQUAL = 1e-3
 """Part by which steps of time may differ from their median, as the digits of a file make them."""
+COARSE = 4
+"""Steps in a period below which a record may lack what shakes a resonance: the filter of a recorder passes up to two
+fifths of its rate, and the resonance has a width. Straight lines leave 81 % there."""
+ATTENUATED = 0.01  # part of a vibration, from which on it is told that straight lines take it off
 FEWEST = 9  # values: two periods of what is sampled four times in each
 LOOKED = 200  # lines of a text in which the names of its columns are sought
 TIME = ("time", "t")
@@ -56,6 +60,26 @@ class Record:
         if self.acceleration[0]:
             told.append(f"before its begin the acceleration is taken as that there, {three(self.acceleration[0])} m/s²")
         return told
+
+    @property
+    def coarsest(self) -> float:
+        """Return the largest step of its time (s)."""
+        return float(np.diff(self.time).max())
+
+    def kept(self, frequency: float) -> float:
+        """Return the part of a vibration (Hz) that is left at least in straight lines between its values, or 0."""
+        turn = frequency * self.coarsest
+        return float(np.sinc(turn) ** 2) if COARSE * turn <= 1 else 0.0
+
+    def sampled(self, resonance: float) -> list[str]:
+        """Return what has to be said of its steps for a resonance (Hz)."""
+        lost = 1 - self.kept(resonance)
+        step, count = three(1e6 * self.coarsest), three(1 / (resonance * self.coarsest))
+        told = f"steps of time of up to {step} µs, {count} in a period of the resonance at {three(resonance)} Hz: "
+        if lost == 1:
+            return [f"{told}with fewer than {COARSE} a record does not show what shakes it, and is not passed"]
+        text = f"straight lines take up to {three(100 * lost)} % off a vibration there, and the interval begins lower"
+        return [told + text] if lost > ATTENUATED else []
 
 
 class Channel(NamedTuple):

@@ -182,7 +182,7 @@ def position_context(assessment: Assessment, component: Component, name: str, va
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
-    notes = [f"{tested.first.named}: {note}" for tested in mine for note in tested.first.notes]
+    notes = [note for tested in mine for note in tested.notes]
     context = {
         "name": name, "rest": "", "sketch": "", "form": f"{ALONE} {told} Form of the model: {'; '.join(forms)}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,

@@ -59,8 +59,6 @@ class PartMargin:
     weakest: str
     limits: str
     """What limits it."""
-    endless: bool = False
-    """Whether the test hardly shakes the part; the margin is the largest that is told."""
 
 
 @dataclass(frozen=True)
@@ -149,6 +147,11 @@ class Tested:
         return self.models[0]
 
     @property
+    def notes(self) -> list[str]:
+        """Return what has to be said of the test, by the first model."""
+        return [f"{self.first.named}: {note}" for note in self.first.notes]
+
+    @property
     def judged(self) -> Margin | None:
         """Return the margin by the first model."""
         return self.first.judged
@@ -200,6 +203,7 @@ class Assessment:
             for each in tested.models:
                 row = {name: getattr(each, name) for name in (*FIELDS, "limits")}
                 row |= {"verdict of all models": tested.verdict}
+                row |= {"notes": "; ".join(each.notes)} if each.notes else {}
                 if (judged := each.judged) is not None:
                     row |= {"margin": judged.margin, "low": judged.low, "high": judged.high, "weakest": judged.weakest}
                     if judged.chance:
@@ -211,8 +215,9 @@ class Assessment:
                     row |= {LEAST[name]: value for name, value in judged.least.items()}
                     units |= {LEAST[name]: UNITS[name] for name in judged.least}
                 rows.append(row)
-        # Columns of parts that no relay here has would be empty.
-        others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
+        # Columns of parts that no relay here has, and of notes, would be empty.
+        known = *MARGINS.values(), *LEAST.values(), "notes"
+        others = [name for name in known if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
         return columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
 
