@@ -65,7 +65,8 @@ test. The noise is Gaussian, and clipped only where the level says so.""",
     "Spectrum": """a pulse of damped sines, in both directions, whose shock response spectrum is the required one or
 more. Another pulse that meets the spectrum may be more severe for the contact.""",
     "Record": """the margin is a factor on the whole record. The component is run around its largest dips of force or
-gap by linear theory, with the times and values of the file.""",
+gap by linear theory, with the times and values of the file. The interval begins lower by what straight lines between
+the values take off a vibration at the first resonance, and at 0 if the steps are too coarse for it.""",
 }
 PUSHERS = {"Prescribed": "pusher that stays where it is", MOVED: "armature that moves a pusher"}
 """By effects.pusher."""
