@@ -154,7 +154,8 @@ def qualify_relay(given: argparse.Namespace) -> None:
     print_table([["position", *HEAD], *lines])
     left = "; ".join(test.name for test in found.standard.left)
     print(f"{found.standard.title}: {found.counts}{': ' if left else ''}{left}")
-    print(*(UNREAD,) * any(marks), *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
+    notes = dict.fromkeys(note for tested in found for note in tested.notes)
+    print(*(UNREAD,) * any(marks), *notes, *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
 
 
 def compare_runs(given: argparse.Namespace) -> None:

@@ -9,7 +9,7 @@ import importlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,9 +21,16 @@ from relay_contact.tables import ACCELERATIONS, TIMES, spelled
 
 EQUAL = 1e-3
 """Part by which steps of time may differ from their median, as the digits of a file make them."""
+COARSE = 4
+"""Steps in a period below which a record may lack what shakes a resonance: the filter of a recorder passes up to two
+fifths of its rate, and the resonance has a width. Straight lines leave 81 % there."""
+ATTENUATED = 0.01  # part of a vibration, from which on it is told that straight lines take it off
+FEWEST = 9  # values: two periods of what is sampled four times in each
 LOOKED = 200  # lines of a text in which the names of its columns are sought
 TIME = ("time", "t")
 """Names of the column, or of the variable, of time."""
+MASTERS = ("nothing", "s", "angle", "distance", "index")
+"""What channels of MDF are over, by its number: time, which is in s, or another."""
 
 
 @dataclass(frozen=True)
@@ -34,13 +41,17 @@ class Record:
     channel: str
     time: Array
     acceleration: Array
+    clock: str = "s"
+    """Unit of time in the file, empty if it has none."""
 
     @property
     def notes(self) -> list[str]:
         """Return what has to be said of its time."""
         steps = np.diff(self.time)
         usual = float(np.median(steps))
-        told = [f"time begins at {self.time[0]:.9g} s, which is kept"] if self.time[0] else []
+        told = [] if self.clock else ["time without a unit, taken as s"]
+        if self.time[0]:
+            told.append(f"time begins at {self.time[0]:.9g} s, which is kept")
         if np.abs(steps - usual).max() > EQUAL * usual:
             told.append(
                 f"steps of time are unequal, {three(1e6 * steps.min())} to {three(1e6 * steps.max())} µs: each is used "
@@ -50,9 +61,39 @@ class Record:
             told.append(f"before its begin the acceleration is taken as that there, {three(self.acceleration[0])} m/s²")
         return told
 
+    @property
+    def coarsest(self) -> float:
+        """Return the largest step of its time (s)."""
+        return float(np.diff(self.time).max())
 
-Channel = tuple[str, str, Any, Any]
-"""Name, unit, time (s; none: by the rate) and values of a channel."""
+    def kept(self, frequency: float) -> float:
+        """Return the part of a vibration (Hz) that is left at least in straight lines between its values, or 0."""
+        turn = frequency * self.coarsest
+        return float(np.sinc(turn) ** 2) if COARSE * turn <= 1 else 0.0
+
+    def sampled(self, resonance: float) -> list[str]:
+        """Return what has to be said of its steps for a resonance (Hz)."""
+        lost = 1 - self.kept(resonance)
+        step, count = three(1e6 * self.coarsest), three(1 / (resonance * self.coarsest))
+        told = f"steps of time of up to {step} µs, {count} in a period of the resonance at {three(resonance)} Hz: "
+        if lost == 1:
+            return [f"{told}with fewer than {COARSE} a record does not show what shakes it, and is not passed"]
+        text = f"straight lines take up to {three(100 * lost)} % off a vibration there, and the interval begins lower"
+        return [told + text] if lost > ATTENUATED else []
+
+
+class Channel(NamedTuple):
+    """A channel as a file has it."""
+
+    name: str
+    unit: str
+    time: Any
+    """None: by the rate."""
+    values: Any
+    clock: str = "s"
+    """Unit of time, empty if the file has none."""
+    invalid: Any = False
+    """Which values the file marks as invalid."""
 
 
 def read(path: Path, channel: str = "", unit: str = "", rate: float | None = None) -> list[Record]:
@@ -64,7 +105,8 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         raise RelayContactError(f"{path}: no such file; it has to be a record of acceleration")
     found = []
     names = []
-    for name, own, time, values in READERS.get(path.suffix.lower(), text)(path):
+    for each in READERS.get(path.suffix.lower(), text)(path):
+        name, own = each.name, each.unit
         names.append(name)
         known = spelled(own) or spelled(unit)
         if channel.lower() != name.lower() if channel else known not in ACCELERATIONS:
@@ -72,7 +114,7 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         if known not in ACCELERATIONS:
             text_ = f"unit {own or 'none'}: not allowed, allowed is {', '.join(ACCELERATIONS)}"
             raise RelayContactError(f"{path}: channel {name}: {text_}{'' if own else '; give the unit'}")
-        found.append(checked(path, name, time, np.asarray(values, dtype=float) * ACCELERATIONS[known], rate))
+        found.append(checked(path, each, ACCELERATIONS[known], rate))
     if not found:
         there = f"there are {', '.join(names)}" if names else "there is none"
         if channel:
@@ -81,26 +123,37 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
     return found
 
 
-def checked(path: Path, name: str, time: Any, values: Array, rate: float | None) -> Record:  # noqa: ANN401
-    """Return a channel whose values are finite and whose time rises."""
+def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> Record:
+    """Return a channel, `factor` its unit in SI, with values that are valid and differ, over a time that rises."""
+    name, time, clock = channel.name, channel.time, spelled(channel.clock)
+    values = np.asarray(channel.values, dtype=float) * factor
     if time is None or len(time) == 0:
         if rate is None:
             raise RelayContactError(f"{path}: channel {name}: no time; give the rate, in samples a second")
-        time = np.arange(len(values)) / rate
+        time, clock = np.arange(len(values)) / rate, "s"
     elif rate is not None:
         raise RelayContactError(f"{path}: channel {name}: a rate is given, and the file has a time")
-    time = np.asarray(time, dtype=float)
-    if len(values) != len(time) or len(values) < 2:
-        raise RelayContactError(f"{path}: channel {name}: {len(values)} values for {len(time)} times: not allowed")
+    if clock and clock not in TIMES:
+        told = f"time in {clock}: not allowed, allowed is {', '.join(TIMES)}"
+        raise RelayContactError(f"{path}: channel {name}: {told}")
+    time = np.asarray(time, dtype=float) * TIMES[clock or "s"]
+    if len(values) != len(time) or len(values) < FEWEST:
+        told = f"{len(values)} values for {len(time)} times: not allowed, allowed are as many, {FEWEST} or more"
+        raise RelayContactError(f"{path}: channel {name}: {told}")
     for what, bad in (
+        ("one that the file does not mark as invalid", np.broadcast_to(channel.invalid, values.shape)),
         ("a finite number", ~(np.isfinite(values) & np.isfinite(time))),
         ("more than the time before", np.concatenate([[False], np.diff(time) <= 0])),
     ):
         if bad.any():
-            at = int(bad.argmax())
-            told = f"value {at + 1}: {values[at]:g} at {time[at]:.9g} s: not allowed, allowed is {what}"
+            at, count = int(bad.argmax()), int(bad.sum())
+            first = f", the first of {count}" if count > 1 else ""
+            told = f"value {at + 1}: {values[at]:g} at {time[at]:.9g} s{first}: not allowed, allowed is {what}"
             raise RelayContactError(f"{path}: channel {name}: {told}")
-    return Record(path, name, time, values)
+    if np.ptp(values) == 0:
+        told = f"{values[0]:g} m/s2 all the time: not allowed, allowed are values that differ"
+        raise RelayContactError(f"{path}: channel {name}: {told}")
+    return Record(path, name, time, values, clock)
 
 
 def text(path: Path) -> Iterator[Channel]:
@@ -116,11 +169,11 @@ def text(path: Path) -> Iterator[Channel]:
         raise RelayContactError(f"{path}: no line with the names of the columns, such as: time [s],acceleration [g]")
     table = tables.read(path, known)
     there = [name for name in table.units if name in TIME]
-    time = table[there[0]] if there else None
+    time, clock = (table[there[0]], table.units[there[0]] and "s") if there else (None, "s")
     for name, unit in table.units.items():
         if name not in TIME:
             usable = unit in ACCELERATIONS or not unit
-            yield name, unit, time, table.numbers(name) if usable else ()
+            yield Channel(name, unit, time, table.numbers(name) if usable else (), clock)
 
 
 def asked(package: str, path: Path) -> Any:  # noqa: ANN401
@@ -137,7 +190,11 @@ def mdf(path: Path) -> Iterator[Channel]:
     with asked("asammdf", path).MDF(path) as file:
         for signal in file.iter_channels():
             if np.issubdtype(np.asarray(signal.samples).dtype, np.number):
-                yield signal.name, signal.unit, signal.timestamps, signal.samples
+                time = signal.timestamps if signal.group_index in file.masters_db else None
+                bits = signal.invalidation_bits
+                bad = False if bits is None else np.asarray(bits)
+                clock = MASTERS[signal.master_metadata[1]]
+                yield Channel(signal.name, signal.unit, time, signal.samples, clock, bad)
 
 
 def uff(path: Path) -> Iterator[Channel]:
@@ -147,7 +204,9 @@ def uff(path: Path) -> Iterator[Channel]:
         if each.get("type") == 58 and each.get("func_type") == 1:
             unit = str(each.get("ordinate_axis_units_lab", "")).strip()
             name = str(each.get("id1", "")).strip()
-            yield name if name not in ("", "NONE") else f"set {number}", unit, each["x"], each["data"]
+            clock = str(each.get("abscissa_axis_units_lab", "")).strip().replace("NONE", "")
+            name = name if name not in ("", "NONE") else f"set {number}"
+            yield Channel(name, unit, each["x"], each["data"], clock or "s")
 
 
 def tdms(path: Path) -> Iterator[Channel]:
@@ -156,7 +215,8 @@ def tdms(path: Path) -> Iterator[Channel]:
         for channel in group.channels():
             timed = "wf_increment" in channel.properties
             unit = str(channel.properties.get("unit_string", ""))
-            yield channel.name, unit, channel.time_track() if timed else None, channel[:]
+            clock = str(channel.properties.get("wf_xunit_string", "")).strip()
+            yield Channel(channel.name, unit, channel.time_track() if timed else None, channel[:], clock or "s")
 
 
 def mat(path: Path) -> Iterator[Channel]:
@@ -170,7 +230,7 @@ def mat(path: Path) -> Iterator[Channel]:
     time = next((value for name, value in vectors.items() if name.lower() in TIME), None)
     for name, value in vectors.items():
         if name.lower() not in TIME:
-            yield name, "", time, value
+            yield Channel(name, "", time, value, "")
 
 
 READERS: dict[str, Callable[[Path], Iterator[Channel]]] = {

@@ -33,6 +33,8 @@ OTHERS = {"sec": "s", "msec": "ms", "usec": "us", "hz": "Hz", "khz": "kHz", "G":
 """Units as some programs write them."""
 CELL = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^\])]*)[\])]|\bin\s+(?P<word>\S+)|\s/\s*(?P<slash>\S+))?")
 """A name, with a unit as in `travel [mm]`, `travel (mm)`, `travel in mm` or `travel / mm`."""
+SETTING = re.compile(r"[^#]*#+([^=:]*)([=:])(.*)")
+"""A line that begins with #, with a name and a text."""
 SEPARATORS, BLANK = ";\t,", ' \t,;"'
 LARGE, BEGIN = 2**20, 2**16  # bytes of a file that is read at once, and of its begin
 ALIKE = 0.75  # of names, from which on one is taken for a slip in the other
@@ -90,6 +92,8 @@ class Table:
     """Lines of the rows."""
     settings: dict[str, tuple[str, int]]
     """Texts by name, with their lines."""
+    remarks: dict[str, tuple[str, int]] = field(default_factory=dict)
+    """The same with a colon in place of the equals sign."""
     places: dict[str, int] = field(default_factory=dict)
     """Of the columns in a row."""
     written: dict[str, Array] = field(default_factory=dict)
@@ -180,16 +184,16 @@ def thorough(path: Path, known: Units, text: str | None = None) -> Table:
     """Read the columns of a file, or of its begin, that are known."""
     lines = {number: line for number, line in enumerate((text or decoded(path)).splitlines(), 1) if line.strip(BLANK)}
     head, separator = begin(lines, known)
-    settings: dict[str, tuple[str, int]] = {}
+    texts: dict[str, dict[str, tuple[str, int]]] = {"=": {}, ":": {}}
     rows: list[tuple[int, list[str]]] = []
     for number, text in lines.items():
         if text.strip(BLANK).startswith("#") and number != head:
-            name, equals, value = (part.strip(BLANK) for part in text.strip(BLANK).lstrip("#").partition("="))
-            if equals:
-                settings[name] = value, number
+            if found := SETTING.match(text):
+                name, sign, value = (part.strip(BLANK) for part in found.groups())
+                texts[sign][name] = value, number
         elif number > head:
             rows.append((number, split(text, separator)))
-    table = Table(path, known, {}, {}, [], head, [], settings)
+    table = Table(path, known, {}, {}, [], head, [], texts["="], texts[":"])
     if not head:
         raise table.wrong(f"no line with the names of the columns; there may be {', '.join(known)}")
     names = split(lines[head].lstrip(" #"), separator)

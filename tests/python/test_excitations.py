@@ -1,5 +1,6 @@
 """Courses, spectra, noise and records as tests: against closed forms, a second solution, and the whole record."""
 
+import csv
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from component import COMPONENT
 from qualified import CONTACTS, described, judged
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
+from relay_contact.command import main
 from relay_contact.qualification import Relay, Standard, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.response import Response, respond
@@ -135,6 +137,41 @@ def test_a_record_alone_is_a_test(tmp_path: Path) -> None:
         assert min(each.margin.curves["course"]) <= 0
     # Sketch, margins, wear, and a figure of each record.
     assert (tmp_path / "qualification.html").read_text(encoding="utf-8").count("<svg") == 5
+
+
+def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One motion at several rates: no interval is above the margin of the finest; what is said of them is everywhere.
+
+    Also a record that hardly shakes anything, and one that is shorter than the figures' spectra.
+    """
+    relay = tmp_path / "relay.toml"
+    relay.write_text("parameters.effects.axialForce = 'FromPreload'\n")
+    written = {"rate 48000": (48e3, 36.0, 0.25), "rate 6000": (6e3, 36.0, 0.25), "rate 3000": (3e3, 36.0, 0.25),
+               "rate 1000": (1e3, 36.0, 0.25), "calm": (48e3, 1e-10, 0.25), "brief": (1e6, 36.0, 5e-5)}  # fmt: skip
+    for name, (rate, level, end) in written.items():
+        time = np.arange(round(rate * end)) / rate
+        values = level * np.minimum(time / 0.05, 1) * np.sin(2 * np.pi * 1190 * time) * (time < 0.2)
+        rows = np.column_stack((time, values))
+        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header="time,a [g]", comments="")
+    asked = [text for name in written for text in ("--history", str(tmp_path / f"{name}.csv"))]
+    assert main(["qualify", str(relay), *asked, "--quick", "--out", str(tmp_path), "--fmu", str(COMPONENT.path)]) == 0
+    printed, page = capsys.readouterr().out, (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    with (tmp_path / "qualification.csv").open(encoding="utf-8") as file:
+        found = {row["test"].removesuffix(".csv"): row for row in csv.DictReader(file)}
+    assert [row["verdict"] for row in found.values()] == ["FAIL", "FAIL", "undecided", "undecided", "pass", "pass"]
+    exact, resonance = (float(found["rate 48000"][name]) for name in ("margin", "resonance [Hz]"))
+    # The Fourier transform of a triangle, by which straight lines are between samples.
+    lost = 100 * (1 - np.sinc(resonance / 6e3) ** 2)
+    for name, told in (("rate 6000", f"{lost:.3g} % off a vibration there"), ("calm", "taken as s"),
+                       ("rate 3000", "2.21 in a period of the resonance"),
+                       ("rate 1000", "with fewer than 4 a record does not show")):  # fmt: skip
+        (note,) = [note for note in found[name]["notes"].split("; ") if told in note]
+        assert f"{name}.csv: {note}\n" in printed
+        assert f"{name}.csv: {note}</li>" in page
+        assert float(found[name]["low"]) < exact or name == "calm"
+    assert "period" not in found["rate 48000"]["notes"]
+    assert "> 1000 " in printed
+    assert float(found["calm"]["margin"]) == 1000
 
 
 @pytest.mark.parametrize("required", [((20.0, 10.0), (80.0, 40.0), (2000.0, 40.0)), ((100.0, 20.0), (1000.0, 500.0))])

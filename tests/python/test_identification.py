@@ -389,6 +389,10 @@ def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> N
             found(data, **asked)
     with pytest.raises(RelayContactError, match=r"none.csv: no such file"):
         found(tmp_path / "none.csv")
+    (tmp_path / "copy.csv").write_bytes(data.read_bytes())
+    for twice in (data, tmp_path / "copy.csv"):
+        with pytest.raises(RelayContactError, match=f"{twice.name}: the same data as .*force.csv: not allowed"):
+            found(data, twice)
     open_relay = tmp_path / "open.toml"
     text = (ROOT / "relays/paper.toml").read_text().replace("contact.overtravel = 0.2e-3", "contact.overtravel = -1e-4")
     open_relay.write_text(text)

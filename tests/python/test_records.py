@@ -13,6 +13,7 @@ from relay_contact.records import read
 G = 9.80665
 TIME = 12.5 + 2e-5 * np.arange(400)
 VALUES = 3 * np.sin(1e3 * TIME)
+MORE = "".join(f"{time},1\n" for time in range(5, 13))
 
 
 def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> None:
@@ -46,18 +47,34 @@ def test_text_without_time_has_a_rate(tmp_path: Path) -> None:
     ):
         read(path)
     assert read(path, unit="g")[0].acceleration == pytest.approx(G * VALUES)
+    path.write_text(path.read_text().replace("time [s]", "time"))
+    assert read(path, unit="g")[0].notes[0] == "time without a unit, taken as s"
     with pytest.raises(RelayContactError, match="a rate is given, and the file has a time"):
         read(path, unit="g", rate=1.0)
 
 
 def test_unequal_steps_are_told_and_times_have_to_rise(tmp_path: Path) -> None:
     path = tmp_path / "steps.csv"
-    path.write_text("time [ms],a [g]\n0,0\n1,1\n3,2\n4,3\n")
+    path.write_text("time [ms],a [g]\n0,0\n1,1\n3,2\n4,3\n" + MORE)
     (record,) = read(path)
     assert [note for note in record.notes if "unequal, 1000 to 2000 µs" in note]
-    assert record.time == pytest.approx([0, 1e-3, 3e-3, 4e-3])
-    path.write_text("time [ms],a [g]\n0,0\n1,1\n1,2\n")
+    assert record.time[:4] == pytest.approx([0, 1e-3, 3e-3, 4e-3])
+    path.write_text("time [ms],a [g]\n0,0\n1,1\n1,2\n" + MORE)
     with pytest.raises(RelayContactError, match=r"value 3: .* allowed is more than the time before"):
+        read(path)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        (MORE, r"channel a: 8 values for 8 times: not allowed, allowed are as many, 9 or more"),
+        (MORE.replace(",1", ",2") + "13,2\n", r"channel a: 2 m/s2 all the time: not allowed, allowed are values that"),
+    ],
+)
+def test_records_that_tell_nothing_are_refused(tmp_path: Path, rows: str, message: str) -> None:
+    path = tmp_path / "few.csv"
+    path.write_text("time [ms],a [m/s2]\n" + rows)
+    with pytest.raises(RelayContactError, match=message):
         read(path)
 
 
@@ -93,20 +110,42 @@ def test_files_of_measuring_programs(tmp_path: Path) -> None:
             [asammdf.Signal(VALUES, TIME, unit="g", name="Z"), asammdf.Signal(VALUES, TIME, unit="V", name="U")]
         )
         file.save(tmp_path / "road.mf4")
-    blank: dict[str, Any] = {
-        "type": 58, "func_type": 1, "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 3, "data": VALUES, "x": TIME,
-        "id1": "Z", "ordinate_axis_units_lab": "m/s2", "orddenom_spec_data_type": 0, "abscissa_spacing": 1,
-    }  # fmt: skip
-    pyuff.UFF(str(tmp_path / "road.uff")).write_sets(blank, "overwrite")
-    with nptdms.TdmsWriter(tmp_path / "road.tdms") as writer:
-        properties = {"unit_string": "g", "wf_increment": 2e-5, "wf_start_offset": 12.5}
-        writer.write_segment([nptdms.ChannelObject("group", "Z", VALUES, properties=properties)])
+    for clock, scale in (("", 1.0), ("ms", 1e3), ("min", 1.0)):
+        blank: dict[str, Any] = {
+            "type": 58, "func_type": 1, "rsp_node": 1, "rsp_dir": 3, "ref_node": 1, "ref_dir": 3, "data": VALUES,
+            "x": scale * TIME, "id1": "Z", "ordinate_axis_units_lab": "m/s2", "orddenom_spec_data_type": 0,
+            "abscissa_spacing": 1, "abscissa_axis_units_lab": clock,
+        }  # fmt: skip
+        pyuff.UFF(str(tmp_path / f"road{clock}.uff")).write_sets(blank, "overwrite")
+        with nptdms.TdmsWriter(tmp_path / f"road{clock}.tdms") as writer:
+            properties = {"unit_string": "g", "wf_increment": 2e-5 * scale, "wf_start_offset": 12.5 * scale}
+            properties |= {"wf_xunit_string": clock} if clock else {}
+            writer.write_segment([nptdms.ChannelObject("group", "Z", VALUES, properties=properties)])
     savemat(tmp_path / "road.mat", {"t": TIME, "Z": VALUES})
-    for suffix, unit, factor in (("mf4", "", G), ("uff", "", 1.0), ("tdms", "", G), ("mat", "g", G)):
-        (record,) = read(tmp_path / f"road.{suffix}", unit=unit)
-        assert record.channel == "Z", suffix
-        assert record.time == pytest.approx(TIME, abs=1e-9), suffix
-        assert record.acceleration == pytest.approx(factor * VALUES, rel=1e-6, abs=1e-9), suffix
+    for name, unit, factor in (("road.mf4", "", G), ("road.uff", "", 1.0), ("roadms.uff", "", 1.0),
+                               ("road.tdms", "", G), ("roadms.tdms", "", G), ("road.mat", "g", G)):  # fmt: skip
+        (record,) = read(tmp_path / name, unit=unit)
+        assert record.channel == "Z", name
+        assert record.time == pytest.approx(TIME, abs=1e-9), name
+        assert record.acceleration == pytest.approx(factor * VALUES, rel=1e-6, abs=1e-9), name
+        assert ("time without a unit, taken as s" in record.notes) == (name == "road.mat"), name
+    for suffix in ("uff", "tdms"):
+        with pytest.raises(RelayContactError, match=r"channel Z: time in min: not allowed, allowed is s, ms, us"):
+            read(tmp_path / f"roadmin.{suffix}")
+
+
+def test_samples_that_a_file_marks_as_invalid_and_other_masters_than_time_are_refused(tmp_path: Path) -> None:
+    asammdf, path = pytest.importorskip("asammdf"), tmp_path / "road.mf4"
+    wrong: tuple[tuple[dict[str, Any], str], ...] = (
+        ({"invalidation_bits": TIME > 12.5059}, r"value 297: .* at 12.50592 s, the first of 104: .* mark as invalid"),
+        ({"master_metadata": ("index", 4)}, r"channel Z: time in index: not allowed, allowed is s, ms, us"),
+    )
+    for marked, message in wrong:
+        with asammdf.MDF(version="4.10") as file:
+            file.append([asammdf.Signal(VALUES, TIME, unit="g", name="Z", **marked)])
+            file.save(path, overwrite=True)
+        with pytest.raises(RelayContactError, match=message):
+            read(path)
 
 
 def test_packages_are_asked_for_only_where_they_are_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,10 +34,16 @@ def identify(
     described = Relay.read(path, component)
     if len({values.get("beam.file") for values in described.positions.values()}) > 1:
         raise RelayContactError(f"{path}: beam.file: not the same in all positions; identify each by itself")
-    for each in data:
-        if not Path(each).is_file():
+    paths = [Path(each) for each in data]
+    known: dict[bytes, Path] = {}
+    for each in paths:
+        if not each.is_file():
             raise RelayContactError(f"{each}: no such file; it has to be a measurement as a CSV file")
-    measurements = [read(Path(each), component, list(described.positions)) for each in data]
+        if (content := each.read_bytes()) in known:
+            told = f"the same data as {known[content]}: not allowed, allowed is each measurement once"
+            raise RelayContactError(f"{each}: {told}")
+        known[content] = each
+    measurements = [read(each, component, list(described.positions)) for each in paths]
     if not measurements:
         raise RelayContactError("no data: one file or more is needed")
     names = parameters or usual(described, measurements)

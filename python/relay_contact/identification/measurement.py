@@ -158,6 +158,10 @@ def interpreted(table: Table, component: Component, positions: list[str]) -> dic
     """Return the settings of a file by name, checked; those of the component among them."""
     own = {"position": positions, "contact": ["open", "closed"]}
     found: dict[str, Value] = {}
+    for name, (text, line) in table.remarks.items():
+        setting = name if name in component.variables else name.lower()
+        if setting in (*own, "calibration", *component.variables):
+            raise table.wrong(f"{name}: {text}: not allowed, allowed is {setting} = {text}", line)
     for name, (text, line) in table.settings.items():
         if name in own:
             if text not in own[name]:

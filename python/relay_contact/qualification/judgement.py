@@ -30,6 +30,7 @@ from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
 from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, sine_threshold, steady, sweep
+from relay_contact.records import ATTENUATED
 
 MANY = 10_000
 """Decay times that a sweep takes to cross a resonance, above which their number does not matter."""
@@ -270,7 +271,7 @@ def transient_level(position: Position, test: Transient) -> tuple[Level, list[Ru
                  key=lambda each: each[1].guess)  # fmt: skip
     runs = [(way, piece, *piece.follow(specimen, ways[way], SHOWN)[:2]) for way, piece in own]
     way, piece = own[0]
-    factor, decides = piece.threshold(specimen, ways[way])
+    factor, decides = (MOST, []) if position.is_endless(test) else piece.threshold(specimen, ways[way])
     for other, each, lengths, _ in runs:
         known: Lengths = {}
         if factor > 1 and specimen.own(lengths):
@@ -337,6 +338,8 @@ def excited(test: Transient) -> dict[str, Any]:
     low, high = (test.response[0][0], test.response[-1][0]) if isinstance(test, Spectrum) else (
         max(1.0, 2 / course.end), min(1e4, 0.25 * (len(course.time) - 1) / course.end)
     )  # fmt: skip
+    # Of a very short record, or a slow one, one frequency.
+    low = min(low, high)
     frequency = synthesis.grid(low, high, spacing)
     quality = test.quality if isinstance(test, Spectrum) else QUALITY
     shown: dict[str, Any] = {
@@ -393,6 +396,8 @@ def judged(position: Position, test: Test, points: int) -> Finding:
     if position.specimen.response.reserve <= 0:
         reason = f"interrupted at rest: more than {position.contacts.threshold:g} Ω of contact resistance"
         return finding("FAIL", reason)
+    if isinstance(test, History):
+        notes += test.record.sampled(position.specimen.response.natural)
     match test:
         case Sine():
             levels, seen = vibration(position, test, points)
@@ -402,6 +407,7 @@ def judged(position: Position, test: Test, points: int) -> Finding:
             levels, seen = transient(position, test)
         case _:
             raise TypeError(test)
+    levels = {name: ENDLESS if each.factor >= MOST else each for name, each in levels.items()}
     own = whole(position, test, levels, seen)
     return finding(verdict(own.low, own.high), levels[first_of(levels)].limits, own)
 
@@ -448,23 +454,28 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
         else:
             drawn[name] = parts[name].margins(test, each.factor, each.factor < BEYOND * level.factor)
     least = Drawn.least(list(drawn.values()))
-    low, high = ends(least, level.factor)
+    natural = position.specimen.response.natural
+    kept = test.record.kept(natural) if isinstance(test, History) else 1.0
+    low, high = ends(least, level.factor, kept)
     wears = [each.wear(test, levels[each.part].factor) for each in position.parts]
     wear = {"overtravel": wears[0]["overtravel"], "margin": np.min([each["margin"] for each in wears], axis=0).tolist()}
     own = {
-        name: PartMargin(each.factor, *ends(drawn[name], each.factor), each.weakest, each.limits, each.factor >= MOST)
+        name: PartMargin(each.factor, *ends(drawn[name], each.factor, kept), each.weakest, each.limits)
         for name, each in levels.items()
     }  # fmt: skip
     return Margin(
         margin=level.factor, linear=level.linear, decides=level.decides, weakest=level.weakest, failed=seen.failed,
-        where=seen.where, least=seen.least, rest=rested(position), natural=position.specimen.response.natural,
+        where=seen.where, least=seen.least, rest=rested(position), natural=natural,
         curves=seen.curves, overtravel=abs(position.overtravel), wear=wear, passes=passes(wear, low / level.factor),
-        low=low, high=high, chance=position.chance(test, least, level.factor), parts=own if len(own) > 1 else {},
-        tolerance=tolerated(parts[first], test),
+        low=low, high=high, chance=position.chance(test, least, level.factor) if kept >= 1 - ATTENUATED else None,
+        parts=own if len(own) > 1 else {}, tolerance=tolerated(parts[first], test),
     )  # fmt: skip
 
 
-def ends(drawn: Drawn, factor: float) -> tuple[float, float]:
-    """Return the ends of the interval of a margin; what the component found is within."""
+def ends(drawn: Drawn, factor: float, kept: float) -> tuple[float, float]:
+    """Return the ends of the interval of a margin; what the component found is within.
+
+    `kept` is the part of a vibration that a record has at least: with all of it less of its level may fail.
+    """
     low, high = np.quantile(drawn.margins, LIMITS, method="hazen").tolist()
-    return min(low, factor), max(high, factor)
+    return kept * min(low, factor), max(high, factor)

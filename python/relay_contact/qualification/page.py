@@ -69,7 +69,8 @@ test. The noise is Gaussian, and clipped only where the level says so.""",
     "Spectrum": """a pulse of damped sines, in both directions, whose shock response spectrum is the required one or
 more. Another pulse that meets the spectrum may be more severe for the contact.""",
     "Record": """the margin is a factor on the whole record. The component is run around its largest dips of force or
-gap by linear theory, with the times and values of the file.""",
+gap by linear theory, with the times and values of the file. The interval begins lower by what straight lines between
+the values take off a vibration at the first resonance, and at 0 if the steps are too coarse for it.""",
 }
 PUSHERS = {"Prescribed": "pusher that stays where it is", MOVED: "armature that moves a pusher"}
 """By effects.pusher."""
@@ -203,7 +204,7 @@ def position_context(assessment: Assessment, component: Component, name: str, va
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
-    notes = [f"{tested.first.named}: {note}" for tested in mine for note in tested.first.notes]
+    notes = [note for tested in mine for note in tested.notes]
     context = {
         "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {'; '.join(forms)}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,

@@ -15,6 +15,7 @@ from relay_contact.component import Array
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, three
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
+from relay_contact.qualification.position import MOST
 from relay_contact.qualification.results import Finding, Tested
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.words import FAILURES, QUANTITIES, failing, failures, is_open, time_text
@@ -137,7 +138,7 @@ def margins(tests: list[Tested]) -> Figure:
                   alpha=0.5)  # fmt: skip
         axes.plot(own.margin, row, MARKERS[each.verdict], color=colour, markeredgecolor="black", markersize=5)
         for name, part in own.parts.items():
-            if not part.endless:
+            if part.margin < MOST:
                 axes.plot(part.margin, row, PARTS[name], color="none", markeredgecolor=GREY, markersize=7)
         parts |= dict.fromkeys(own.parts)
     axes.set(

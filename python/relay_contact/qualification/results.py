@@ -61,8 +61,6 @@ class PartMargin:
     weakest: str
     limits: str
     """What limits it."""
-    endless: bool = False
-    """Whether the test hardly shakes the part; the margin is the largest that is told."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +92,7 @@ class Margin:
     low: float = 0.0
     high: float = 0.0
     chance: Chance | None = None
+    """None of a record whose steps are too coarse for it."""
     parts: dict[str, PartMargin] = field(default_factory=dict)
     """The margins of each part, of a relay that has others than its contacts; the least is that of the relay."""
     tolerance: tuple[float, float] | None = None
@@ -101,8 +100,8 @@ class Margin:
 
     @property
     def stated(self) -> bool:
-        """Whether something makes an interval: an uncertain parameter, an allowance, or the chance of a noise."""
-        return self.chance is not None and len(self.chance.effects) > 0
+        """Whether something makes an interval: an uncertain parameter, an allowance, the chance of a noise, or a record."""
+        return self.chance is None or len(self.chance.effects) > 0
 
 
 @dataclass(frozen=True)
@@ -154,6 +153,11 @@ class Tested:
     def first(self) -> Finding:
         """Return the finding by the first model, which figures show."""
         return self.models[0]
+
+    @property
+    def notes(self) -> list[str]:
+        """Return what has to be said of the test, by the first model."""
+        return [f"{self.first.named}: {note}" for note in self.first.notes]
 
     @property
     def judged(self) -> Margin | None:
@@ -214,10 +218,11 @@ class Assessment:
             for each in tested.models:
                 row = {name: getattr(each, name) for name in (*FIELDS, "limits")}
                 row |= {"verdict of all models": tested.verdict}
+                row |= {"notes": "; ".join(each.notes)} if each.notes else {}
                 if (judged := each.judged) is not None:
                     row |= {"margin": judged.margin, "weakest": judged.weakest}
+                    row |= {"low": judged.low, "high": judged.high} if judged.stated else {}
                     if judged.stated and (chance := judged.chance):
-                        row |= {"low": judged.low, "high": judged.high}
                         row |= {"chance": chance.failing, "chance low": chance.low, "chance high": chance.high}
                     row |= {"fails first": " and ".join(judged.decides), "resonance": judged.natural}
                     row |= {TIMES[name]: value for name, value in judged.failed.items() if name in TIMES}
@@ -228,8 +233,9 @@ class Assessment:
         for test in self.standard.left:
             told = {"test": test.name, "clause": test.clause, "level": str(test), "verdict": NOT_RUN}
             rows.append(dict.fromkeys(FIELDS, "") | told)
-        # Columns of parts that no relay here has would be empty.
-        others = [name for name in (*MARGINS.values(), *LEAST.values()) if any(name in row for row in rows)]
+        # Columns of parts that no relay here has, and of notes, would be empty.
+        known = *MARGINS.values(), *LEAST.values(), "notes"
+        others = [name for name in known if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
         return columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
 

@@ -69,6 +69,15 @@ def left_of(margin: Margin, name: str) -> str:
     return f"{QUANTITIES[name]} {three(100 * max(margin.least[name], 0.0) / margin.rest[name])} %"
 
 
+def numbers(own: Margin | PartMargin, stated: bool) -> tuple[str, str]:
+    """Return a margin and its interval if there is one, in words: not of what does not fail."""
+    endless = own.margin >= MOST
+    interval = f"{three(own.low)} to {three(own.high)}" if stated else UNSTATED
+    if endless and own.low > 1:
+        interval = ""
+    return f"> {MOST:g}" if endless else three(own.margin), interval
+
+
 def own_cells(finding: Finding) -> list[str]:
     """Return what the table has of a test by one model, from the verdict on."""
     if finding.judged is None:
@@ -77,8 +86,7 @@ def own_cells(finding: Finding) -> list[str]:
     # Of parts that are held in their own rows.
     left = [left_of(own, name) for name in own.least if name not in LEAVES]
     first = " and ".join(own.decides) or "none"
-    interval = f"{three(own.low)} to {three(own.high)}" if own.stated else UNSTATED
-    return [finding.verdict, three(own.margin), interval, own.weakest, first, failures(own), ", ".join(left)]
+    return [finding.verdict, *numbers(own, own.stated), own.weakest, first, failures(own), ", ".join(left)]
 
 
 def part_rows(finding: Finding) -> list[list[str]]:
@@ -92,11 +100,8 @@ def part_row(margin: Margin, name: str, part: PartMargin) -> list[str]:
     names = [each for each in (CLOSED, OPEN) if each in margin.least] if name == CONTACT else [name]
     told = [failure(margin, each) for each in names if each in margin.failed]
     left = [left_of(margin, each) for each in names]
-    shown, interval = three(part.margin), f"{three(part.low)} to {three(part.high)}" if margin.stated else UNSTATED
-    if part.endless:
-        shown, interval = f"> {MOST:g}", ""
     label = names[0] if name == CONTACT and len(names) == 1 else "contacts" if name == CONTACT else name
-    cells = [verdict(part.low, part.high), shown, interval, part.weakest, "", ", ".join(told) or "holds"]
+    cells = [verdict(part.low, part.high), *numbers(part, margin.stated), part.weakest, "", ", ".join(told) or "holds"]
     return [f"· {label}", "", *cells, ", ".join(left)]
 
 
