@@ -246,6 +246,9 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
             assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
         }
     }
+    // At the tightest tolerance rounding sends a step to the fallback, whose mean force over 5e-18 s was a maximum that never was.
+    let judged = judge(61_576, kinds::any, 0.0);
+    assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
 }
 
 /// Openings and closings in the first three communication steps, s; each taken in steps of which the first has this length (s) and each

@@ -60,15 +60,18 @@ impl Recorder<'_> {
         let second = model.roles.second;
         let touches = state.touches_now();
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
+        let mut is_course = true;
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
             let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
                 continue;
             };
+            // The mean force of a step of the fallback, which may be mere rounding: extremes are then those of its ends.
+            let is_constant = nodes.forces.windows(2).all(|pair| matches!(pair, [a, b] if a == b));
+            is_course &= !(is_constant && at.closed);
             // Of an open contact nobody reads the force.
             if at.closed || link.contact().is_none() {
                 // Through an instant at which the force all but jumps a polynomial would overshoot; so it would to a constant one.
                 let jumps = touches && link.contact().is_some_and(Law::is_steep_at_touch);
-                let is_constant = nodes.forces.windows(2).all(|pair| matches!(pair, [a, b] if a == b));
                 let start = if jumps || is_constant {
                     collocation.interpolate(&nodes.forces, 0.0)
                 } else {
@@ -90,7 +93,7 @@ impl Recorder<'_> {
                 }
             }
             if let Some(extremes) = &mut self.extremes {
-                if at.closed {
+                if at.closed && !is_constant {
                     extremes.add_course(link, index, (&at.course, &turns), -1.0, 0.0);
                 }
                 if second == Some(index) {
@@ -106,7 +109,7 @@ impl Recorder<'_> {
                 }
             }
         }
-        if let Some(extremes) = &mut self.extremes {
+        if let Some(extremes) = self.extremes.as_mut().filter(|_| is_course) {
             let course = |index: usize| {
                 let at = state.links.get(index).filter(|at| at.closed)?;
                 Some((&at.course, turning_points(model.simd, &at.course)))

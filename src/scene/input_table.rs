@@ -124,8 +124,8 @@ impl InputTable {
     /// [`SceneError::OutOfRange`] if a rate is not finite, or if the step is longer than the time between two rows: it would pass
     /// them over.
     pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
-        // Not those that are at its ends but for rounding.
-        let within = |row: &&f64| (1e-9..1.0 - 1e-9).contains(&((**row - time) / size));
+        // Not those that are at its ends but for the rounding of a recorder.
+        let within = |row: &&f64| (0.01..0.99).contains(&((**row - time) / size));
         let first = self.times.partition_point(|row| *row <= time);
         let mut passed = self
             .times

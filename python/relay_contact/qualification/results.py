@@ -100,7 +100,7 @@ class Margin:
 
     @property
     def stated(self) -> bool:
-        """Whether something makes an interval: an uncertain parameter, an allowance, the chance of a noise, or a record."""
+        """Whether something makes an interval: an uncertain parameter, an allowance, a noise or a coarse record."""
         return self.chance is None or len(self.chance.effects) > 0
 
 
