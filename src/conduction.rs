@@ -7,24 +7,27 @@ use crate::model::Model;
 use crate::variables::RealOutput;
 
 /// What a circuit conducts.
-struct Conducting {
-    electrical: ElectricalContact,
+struct Conducting<'a> {
+    electrical: &'a ElectricalContact,
     /// Its contact, and one parallel to it, each with its own law.
-    contacts: [Option<(usize, ElectricalContact)>; 2],
+    contacts: [Option<(usize, &'a ElectricalContact)>; 2],
     /// Conductance of the spot of each, S.
     spots: [f64; 2],
     /// All of it, S.
     conductance: f64,
 }
 
-impl Conducting {
+impl<'a> Conducting<'a> {
     /// The circuit of a contact; `None` without the contact or a resistance.
-    fn of(model: &Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
+    #[inline(always)]
+    fn of(model: &'a Model, motion: &Motion, role: Option<usize>) -> Option<Self> {
+        let law = |index: usize| Some((index, model.links.get(index)?.electrical.as_ref()?));
+        let own = law(role?)?;
         let parallel = model.roles.parallel.filter(|_| role == Some(CONTACT));
-        let contacts = [role, parallel].map(|index| Some((index?, model.links.get(index?)?.electrical?)));
-        let (_, electrical) = contacts[0]?;
-        let spot = |(index, law): (usize, ElectricalContact)| law.spot(motion.force(model, index));
+        let contacts = [Some(own), parallel.and_then(law)];
+        let spot = |(index, law): (usize, &ElectricalContact)| law.spot(motion.force(model, index));
         let spots = contacts.map(|contact| contact.map_or(0.0, spot));
+        let (_, electrical) = own;
         Some(Self {
             electrical,
             contacts,
@@ -73,7 +76,7 @@ pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 
         let warm = output == RealOutput::ContactTemperature;
         return if warm { scene.environment.temperature } else { 0.0 };
     };
-    let (electrical, conductance) = (&circuit.electrical, circuit.conductance);
+    let (electrical, conductance) = (circuit.electrical, circuit.conductance);
     match output {
         RealOutput::ContactConductance | RealOutput::SecondConductance => conductance,
         RealOutput::ContactResistance | RealOutput::SecondResistance => 1.0 / conductance,

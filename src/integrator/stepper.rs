@@ -18,7 +18,7 @@ use crate::integrator::recorder::Recorder;
 use crate::integrator::step_length::{StepOutcome, doubles};
 use crate::integrator::transition;
 use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
-use crate::math::nodal::{LONG, SHORT};
+use crate::math::nodal::{LONG, Nodal, SHORT};
 use crate::model::Model;
 use crate::state::State;
 
@@ -110,14 +110,18 @@ impl Stepper<'_> {
         let read = self.recorder.reads_before(target.time);
         let watched = model.scene.effects.extremes || model.counts_interruptions();
         // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs, or a jump of the
-        // generated acceleration, extremes lie there.
+        // generated acceleration, or where the force turns, extremes lie there.
         let jumps = self.state.lengths.last == 0.0 && !self.state.touches_now();
-        let inside =
-            if (self.progress.driven || jumps) && watched && closed || (read || watched || !closed) && S != SHORT {
-                self.whole(trial, target.length).inaccuracy()
-            } else {
-                0.0
-            };
+        let mut links = model.links.iter().zip(&self.state.links).zip(&trial.links);
+        let inside = if (self.progress.driven || jumps) && watched && closed
+            || (read || watched || !closed) && S != SHORT
+        {
+            self.whole(trial, target.length).inaccuracy()
+        } else if watched && links.any(|((link, at), nodes)| at.closed && turns(at.force - link.force, &nodes.forces)) {
+            trial.inner_error.lasting / model.tolerance.force
+        } else {
+            0.0
+        };
         let near = self.state.kink_is_closing && self.state.time - self.state.last_kink < NEAR_BLOW * target.length;
         let after_blow = if closed && near { AFTER_BLOW } else { 1.0 };
         let all = self.passing();
@@ -286,4 +290,12 @@ impl Stepper<'_> {
             cause,
         }
     }
+}
+
+/// Whether a force rises and falls from `start` (N) over the nodes of a step.
+fn turns<const S: usize>(start: f64, forces: &Nodal<S>) -> bool {
+    let pairs = [start].into_iter().chain(*forces).zip(forces);
+    let mut rises = pairs.map(|(a, b)| *b > a);
+    let first = rises.next();
+    rises.any(|next| Some(next) != first)
 }

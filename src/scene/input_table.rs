@@ -124,24 +124,13 @@ impl InputTable {
     /// [`SceneError::OutOfRange`] if a rate is not finite, or if the step is longer than the time between two rows: it would pass
     /// them over.
     pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
-        // Not those that are at its ends but for the rounding of a recorder.
-        let within = |row: &&f64| (0.01..0.99).contains(&((**row - time) / size));
-        let first = self.times.partition_point(|row| *row <= time);
-        let mut passed = self
-            .times
-            .iter()
-            .skip(first)
-            .take_while(|row| **row < time + size)
-            .filter(within);
-        if let (Some(row), Some(next)) = (passed.next(), passed.next()) {
+        if let Some(distance) = self.passed_over(time, size) {
+            let distance = crate::error::number(distance);
             return Err(SceneError::OutOfRange {
                 name: "communicationStep",
                 value: size,
                 unit: "s",
-                allowed: format!(
-                    "allowed is the time between two rows of the input table, {} s",
-                    crate::error::number(next - row)
-                ),
+                allowed: format!("allowed is the time between two rows of the input table, {distance} s"),
             });
         }
         self.columns.iter().try_for_each(|(input, values)| {
@@ -149,6 +138,16 @@ impl InputTable {
             inputs.set_real(*input, value)?;
             inputs.set_rate(*input, (self.value(values, time + size) - value) / size)
         })
+    }
+
+    /// The time between two rows that both lie inside a step of `size` seconds from `time` (s), not at its ends but for the rounding
+    /// of a recorder.
+    fn passed_over(&self, time: f64, size: f64) -> Option<f64> {
+        let first = self.times.partition_point(|row| *row <= time + 0.01 * size);
+        let [row, next] = self.times.get(first..first + 2)? else {
+            return None;
+        };
+        (*next < time + 0.99 * size).then_some(next - row)
     }
 
     fn value(&self, values: &[f64], time: f64) -> f64 {
