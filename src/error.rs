@@ -147,6 +147,16 @@ pub enum Remark {
         file: String,
         fork: f64,
     },
+    /// A damping ratio that may be meant in per cent.
+    #[error(
+        "{name} = {file}: damping = {} of the lowest mode is a ratio to the critical one, {} % of it",
+        number(*damping), number(100.0 * damping)
+    )]
+    Damped {
+        name: &'static str,
+        file: String,
+        damping: f64,
+    },
     /// A spring bent so far that a linear beam misses a part of its force.
     #[error(
         "contact.overtravel = {} m: the spring is bent by {bent:.2} of its length of {} m; an elastica under a load along y is \

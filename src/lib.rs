@@ -6,9 +6,9 @@
 //! modelDescription.xml -> variables   what there is to set and to read
 //! scene       parameters and effects of one simulation
 //! beam        section, segments or given modes -> modes of the cantilever, frequencies, static compliance
-//! contact     indentation -> contact force (Hertz, with dissipation)
+//! contact     indentation -> contact force (Hertz, rough, linear, with dissipation), friction;   armature, magnet
 //! preload     static equilibrium of beam and contact
-//! model       Scene -> Model (never changes);   state  all that moves
+//! foundation, assembly  modes, ports and links of a scene -> model (never changes);   state  all that moves
 //! slip_stability  whether the contact slips without vibrating by itself
 //! link        ports and links: where forces act on the modes, and by which laws;   settle  the links that a motion makes
 //! integrator  Model, State, inputs -> State after a communication step: "The method" at its head

@@ -55,7 +55,7 @@ impl Default for Kept {
 }
 
 impl Simulation {
-    /// The scene at rest in its preload at `start_time`, s. The initial `support.displacement` belongs to the preload.
+    /// The scene at rest in its preload at `start_time`, s. To it belong the displacements and the current of the coil at the start.
     ///
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
@@ -152,7 +152,7 @@ impl Simulation {
         Ok(simulation)
     }
 
-    /// The state: together with the scene and the initial displacement of the fixed contact, all that has to be saved.
+    /// The state: together with the scene and what the inputs at the start made of the preload, all that has to be saved.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }

@@ -32,7 +32,7 @@ pub const SPRINGS: usize = 3;
 pub struct Mode {
     /// omega_i^2, 1/s2.
     pub omega_squared: f64,
-    /// c_i = alpha + beta omega_i^2, 1/s (Machines 2025, 13(1), 52, eq. (22)).
+    /// c_i, 1/s: alpha + beta omega_i^2 (Machines 2025, 13(1), 52, eq. (22)), or as a file or the armature has it.
     pub damping: f64,
     /// Displacement T_i that opens the contact, 1/sqrt(kg): of the tip, or of a fixed contact with the opposite sign.
     pub tip: f64,

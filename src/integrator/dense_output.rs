@@ -20,7 +20,7 @@ pub(crate) struct DenseOutput {
 pub(crate) struct DenseLink {
     /// Force, N.
     pub force: Prediction,
-    /// Approach, m; of contacts.
+    /// Approach, m; not of friction.
     pub approach: Prediction,
     /// Its velocity, m/s.
     pub rate: Prediction,

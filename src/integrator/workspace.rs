@@ -1,4 +1,4 @@
-//! Preallocated memory of the integrator, so that no step allocates, and the limit of steps.
+//! Preallocated memory of the integrator, so that no step allocates, and the limit of work.
 
 use bytemuck::zeroed_box;
 

@@ -80,6 +80,18 @@ fn what_does_not_count_beside_a_file_is_told() {
 }
 
 #[test]
+fn damping_that_may_be_in_per_cent_is_told() {
+    for (ratio, told) in [(0.34, false), (1.0, true)] {
+        let mut modes = written(&Model::new(&Scene::default(), 0.0).unwrap());
+        // Higher modes may have any.
+        (modes.modes[0].damping, modes.modes[1].damping) = (Some(ratio), Some(5.0));
+        let scene = with(Scene::default(), Shape::Modes(modes));
+        let remarks = Model::new(&scene, 0.0).unwrap().remarks();
+        assert_eq!(matches!(remarks[..], [Remark::Damped { .. }]), told, "{remarks:?}");
+    }
+}
+
+#[test]
 fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
     // The eigenvectors of a beam, cut off. Below them the series is exact but for the square of the ratio of frequencies.
     let mut scene = shaken(98.0, 500.0);
