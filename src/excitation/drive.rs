@@ -40,10 +40,10 @@ impl Drive {
         self.acceleration + self.jerk * (time - self.since)
     }
 
-    /// Whether it began less than one and a half steps of `length` seconds before an instant (s).
+    /// Whether it began less than half a step of `length` seconds before an instant (s).
     #[inline(always)]
     pub(crate) fn has_just_changed(&self, time: f64, length: f64) -> bool {
-        self.new && time - self.since < 1.5 * length
+        self.new && time - self.since < 0.5 * length
     }
 
     /// Whether the base acceleration is constant and the fixed contacts at rest.

@@ -18,7 +18,7 @@ use crate::integrator::recorder::Recorder;
 use crate::integrator::step_length::{StepOutcome, doubles};
 use crate::integrator::transition;
 use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
-use crate::math::nodal::{LONG, Nodal, SHORT};
+use crate::math::nodal::{LONG, Nodal, SHORT, end};
 use crate::model::Model;
 use crate::state::State;
 
@@ -112,16 +112,18 @@ impl Stepper<'_> {
         // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs, or a jump of the
         // generated acceleration, or where the force turns, extremes lie there.
         let jumps = self.state.lengths.last == 0.0 && !self.state.touches_now();
-        let mut links = model.links.iter().zip(&self.state.links).zip(&trial.links);
-        let inside = if (self.progress.driven || jumps) && watched && closed
-            || (read || watched || !closed) && S != SHORT
-        {
-            self.whole(trial, target.length).inaccuracy()
-        } else if watched && links.any(|((link, at), nodes)| at.closed && turns(at.force - link.force, &nodes.forces)) {
-            trial.inner_error.lasting / model.tolerance.force
-        } else {
-            0.0
-        };
+        let inside =
+            if (self.progress.driven || jumps) && watched && closed || (read || watched || !closed) && S != SHORT {
+                self.whole(trial, target.length).inaccuracy()
+            } else if watched {
+                // Of what turns; not of a force that hardly changes, as the fastest vibrations need not be resolved.
+                let links = model.links.iter().zip(&self.state.links).zip(&trial.links);
+                let closed = links.filter(|((_, at), _)| at.closed);
+                let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &nodes.forces));
+                trial.inner_error.lasting.min(swings.fold(0.0, f64::max)) / model.tolerance.force
+            } else {
+                0.0
+            };
         let near = self.state.kink_is_closing && self.state.time - self.state.last_kink < NEAR_BLOW * target.length;
         let after_blow = if closed && near { AFTER_BLOW } else { 1.0 };
         let all = self.passing();
@@ -292,10 +294,10 @@ impl Stepper<'_> {
     }
 }
 
-/// Whether a force rises and falls from `start` (N) over the nodes of a step.
-fn turns<const S: usize>(start: f64, forces: &Nodal<S>) -> bool {
-    let pairs = [start].into_iter().chain(*forces).zip(forces);
-    let mut rises = pairs.map(|(a, b)| *b > a);
-    let first = rises.next();
-    rises.any(|next| Some(next) != first)
+/// How far a force that rises and falls from `start` (N) over the nodes of a step is from where it turns, N; 0 of one that does not.
+fn swing<const S: usize>(start: f64, forces: &Nodal<S>) -> f64 {
+    let end = end(forces);
+    let [low, high] = [f64::min, f64::max].map(|of| forces.iter().copied().fold(start, of));
+    let beyond = |turn: f64| (turn - start).abs().min((turn - end).abs());
+    beyond(low).max(beyond(high))
 }
