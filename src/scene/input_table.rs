@@ -94,10 +94,10 @@ impl InputTable {
     }
 
     /// # Errors
-    /// [`SceneError::InputTable`] if no row is before the end of the run, or none after its start.
+    /// [`SceneError::InputTable`] if no row is before the end of the run, or all are before its start.
     pub(crate) fn check_overlap(&self, stop: f64) -> Result<(), SceneError> {
         match (self.times.first(), self.times.last()) {
-            (Some(first), Some(last)) if *first >= stop || *last <= 0.0 => {
+            (Some(first), Some(last)) if *first >= stop || *last < 0.0 => {
                 let [first, last, stop] = [*first, *last, stop].map(crate::error::number);
                 Err(SceneError::InputTable(format!(
                     "time = {first} to {last} s: the run lasts from 0 to {stop} s"
