@@ -42,7 +42,8 @@ const OF_UNIFORM: [RealParameter; 3] = [
     RealParameter::BeamThickness,
 ];
 
-/// What springs by segments need beside their file, and springs by modes do not.
+/// What springs by segments need beside their file, and springs by modes do not: the material, which may be that of the fixed
+/// contact's spring too, what the spring carries, and where it is pushed.
 const OF_SEGMENTS: [RealParameter; 5] = [
     RealParameter::BeamYoungsModulus,
     RealParameter::BeamDensity,
@@ -217,7 +218,8 @@ impl Model {
 
     fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
         let by_modes = matches!(spring.shape, Shape::Modes(_));
-        let of_segments = OF_SEGMENTS.into_iter().filter(move |_| by_modes);
+        let shared = if self.scene.fixed_spring.is_some() { 2 } else { 0 };
+        let of_segments = OF_SEGMENTS.into_iter().skip(shared).filter(move |_| by_modes);
         let set = OF_UNIFORM.into_iter().chain(of_segments);
         let set = set.filter(|size| self.scene.real(*size) != size.variable().start);
         set.map(|size| Remark::NotUsed {

@@ -66,6 +66,13 @@ fn what_does_not_count_beside_a_file_is_told() {
         remarks.into_iter().map(name).collect()
     };
     assert_eq!(names(&scene), ["beam.density", "tip.mass", "pusher.position"]);
+    // The fixed contact's may be of that material.
+    let bar = Segments {
+        segments: vec![segment(0.01, [4e-3; 2], [3e-4; 2])],
+        ..Segments::default()
+    };
+    scene.fixed_spring = with(Scene::default(), Shape::Segments(bar)).spring;
+    assert_eq!(names(&scene), ["tip.mass", "pusher.position"]);
     let forked = Segments {
         segments: vec![segment(0.0155, [4e-3; 2], [3e-4; 2])],
         fork_position: Some(0.01),
