@@ -4,7 +4,7 @@
 //! a factor. Then a deviation of the motion is carried along ([`crate::integrator::deviation`]), which tells by how much the
 //! largest error has grown, and which force all errors so far make if each has the direction that grows most. The first says too
 //! little where many errors add up, the second too much: the estimate is their geometric mean. Of 2,000 random relays of all kinds
-//! 55 exceed their tolerance, one of them without a larger estimate; one in seven that keep it has one, too. What the modes left
+//! 55 exceed their tolerance, two of them without a larger estimate; one in seven that keep it has one, too. What the modes left
 //! out do is added ([`crate::beam::resolution`]). Where slip is unstable ([`crate::slip_stability`]) all of it grows, at the rate
 //! of such a contact force, until the contact sticks, opens or slips back.
 
