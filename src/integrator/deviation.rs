@@ -16,6 +16,15 @@ use crate::math::simd::Arithmetic;
 /// Part of the energy of a deviation below which it does not show what happens there, 1. Chosen: one in ten of the amplitude.
 const HIDDEN: f64 = 1e-2;
 
+impl Deviation {
+    /// Twice the energy of each mode, J.
+    #[inline(always)]
+    fn energies(&self, slowest: &Slowest) -> impl Iterator<Item = f64> {
+        let modes = self.q.iter().zip(&self.v).zip(&slowest.omega_squared);
+        modes.map(|((q, v), omega_squared)| omega_squared * q * q + v * v)
+    }
+}
+
 impl ForceError {
     /// A contact at this port opens or closes, which begins the deviation with a blow, or adds one where its modes have hardly any
     /// part in it: the other bodies' would hide how errors grow there.
@@ -23,16 +32,15 @@ impl ForceError {
         let (Some(shape), Some(by_impulse)) = (slowest.shapes.get(port), slowest.by_impulse.get(port)) else {
             return;
         };
-        let Deviation { q, v } = &mut self.deviation;
-        let modes = q.iter().zip(&*v).zip(&slowest.omega_squared).zip(shape);
-        let energies = modes.filter(|(_, shape)| **shape != 0.0);
+        let energies = self.deviation.energies(slowest).zip(shape);
         let energy: f64 = energies
-            .map(|(((q, v), omega_squared), _)| omega_squared * q * q + v * v)
+            .filter(|(_, shape)| **shape != 0.0)
+            .map(|(energy, _)| energy)
             .sum();
         if *by_impulse == 0.0 || energy > HIDDEN {
             return;
         }
-        for (v, shape) in v.iter_mut().zip(shape) {
+        for (v, shape) in self.deviation.v.iter_mut().zip(shape) {
             *v += shape / by_impulse;
         }
         self.size *= self.normalise(slowest);
@@ -116,11 +124,14 @@ impl ForceError {
     /// Brings it back to size 1, the root of its energy; returns what it was.
     #[inline(always)]
     fn normalise(&mut self, slowest: &Slowest) -> f64 {
-        let Deviation { q, v } = &mut self.deviation;
-        let modes = q.iter().zip(&*v).zip(&slowest.omega_squared);
-        let energy: f64 = modes.map(|((q, v), omega_squared)| omega_squared * q * q + v * v).sum();
-        let size = energy.sqrt().max(f64::MIN_POSITIVE);
+        let size = self
+            .deviation
+            .energies(slowest)
+            .sum::<f64>()
+            .sqrt()
+            .max(f64::MIN_POSITIVE);
         let inverse = 1.0 / size;
+        let Deviation { q, v } = &mut self.deviation;
         (*q, *v) = (scaled(q, inverse), scaled(v, inverse));
         self.forces = scaled(&self.forces, inverse);
         size
@@ -155,5 +166,37 @@ mod tests {
             // Nothing is known of the first, all is lost with the second.
             assert_eq!(of_steps.size > 0.0, impulse.is_infinite());
         }
+    }
+    /// A mode that lasts, of another body, would hide what grows at a contact once its own have faded.
+    #[test]
+    fn a_deviation_that_has_faded_at_a_contact_begins_there_anew() {
+        let of = |damping, tip, armature| Mode {
+            omega_squared: 1.0,
+            damping,
+            tip,
+            armature,
+            ..Mode::default()
+        };
+        let modes = [of(1.0, 1.0, 0.0), of(0.0, 0.0, 1.0)];
+        let ports = [|mode: &Mode| mode.tip, |mode: &Mode| mode.armature].map(|place| Port::new(&modes, place));
+        let slowest = Slowest::of(&modes, &ports);
+        let free = slowest.free(|_, mode| FreeMotion::new(mode.omega_squared, mode.damping, 0.1));
+        let mut error = ForceError {
+            size: 1.0,
+            ..ForceError::default()
+        };
+        let part = |error: &ForceError| error.deviation.energies(&slowest).next().unwrap();
+        error.begin(&slowest, 0);
+        error.begin(&slowest, 1);
+        // Each as large as the other, and as all errors together were.
+        assert!((part(&error) - 0.5).abs() < 1e-12 && (error.size - 2.0_f64.sqrt()).abs() < 1e-12);
+        error.begin(&slowest, 0);
+        assert!((part(&error) - 0.5).abs() < 1e-12);
+        for _ in 0..200 {
+            error.advance::<Separate>(&slowest, &free, [].into_iter());
+        }
+        assert!((1e-12..1e-6).contains(&part(&error)), "{}", part(&error));
+        error.begin(&slowest, 0);
+        assert!((part(&error) - 0.5).abs() < 1e-3, "{}", part(&error));
     }
 }
