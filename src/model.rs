@@ -42,15 +42,15 @@ const OF_UNIFORM: [RealParameter; 3] = [
     RealParameter::BeamThickness,
 ];
 
-/// What springs by segments need beside their file, and springs by modes do not: the material, which may be that of the fixed
-/// contact's spring too, what the spring carries, and where it is pushed.
-const OF_SEGMENTS: [RealParameter; 5] = [
-    RealParameter::BeamYoungsModulus,
-    RealParameter::BeamDensity,
+/// What springs by modes do not need, beside the material: what the spring carries, and where it is pushed.
+const CARRIED: [RealParameter; 3] = [
     RealParameter::TipMass,
     RealParameter::TipRotaryInertia,
     RealParameter::PusherPosition,
 ];
+
+/// The material, which may be that of the fixed contact's spring too.
+const MATERIAL: [RealParameter; 2] = [RealParameter::BeamYoungsModulus, RealParameter::BeamDensity];
 
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
@@ -218,9 +218,10 @@ impl Model {
 
     fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
         let by_modes = matches!(spring.shape, Shape::Modes(_));
-        let shared = if self.scene.fixed_spring.is_some() { 2 } else { 0 };
-        let of_segments = OF_SEGMENTS.into_iter().skip(shared).filter(move |_| by_modes);
-        let set = OF_UNIFORM.into_iter().chain(of_segments);
+        let carried = CARRIED.into_iter().filter(move |_| by_modes);
+        let shared = self.scene.fixed_spring.is_some();
+        let material = MATERIAL.into_iter().filter(move |_| by_modes && !shared);
+        let set = OF_UNIFORM.into_iter().chain(material).chain(carried);
         let set = set.filter(|size| self.scene.real(*size) != size.variable().start);
         set.map(|size| Remark::NotUsed {
             name: size.variable().name,

@@ -33,6 +33,11 @@ Place = tuple[Any, str]
 """A table of a spring file, and the key of an entry in it."""
 
 
+def by_modes(path: Path) -> bool:
+    """Return whether a file describes its spring by modes."""
+    return "mode" in read_toml(path)
+
+
 def is_entry(name: str) -> bool:
     """Return whether a name is that of an entry of a spring file."""
     return name.startswith(tuple(OF_FILES.values()))

@@ -52,29 +52,29 @@ impl Scene {
             "false",
             NO_RESISTANCE,
         )?;
-        for (name, spring) in [("beam.file", &self.spring), ("fixed.file", &self.fixed_spring)] {
-            let Some(spring) = spring else {
-                continue;
-            };
-            let Shape::Modes(given) = &spring.shape else {
-                continue;
-            };
-            let lacks = |entry: fn(&GivenMode) -> Option<f64>| given.modes.iter().any(|mode| entry(mode).is_none());
-            let modes = format!("the modes of {name} = {}", spring.name);
-            let beside = |instead| (modes.as_str(), instead);
-            let turned = beside("the rotation of the contact, rotation, in each [[mode]]");
-            refuse(rubs && lacks(|mode| mode.rotation), FRICTION.0, "None", turned)?;
-            if name == "fixed.file" {
-                continue;
+        // What the fixed contact's spring need not know is where others touch the moving one.
+        let springs = [
+            ("beam.file", &self.spring, true),
+            ("fixed.file", &self.fixed_spring, false),
+        ];
+        for (name, spring, moves) in springs {
+            if let Some(spring) = spring
+                && let Shape::Modes(given) = &spring.shape
+            {
+                let lacks = |entry: fn(&GivenMode) -> Option<f64>| given.modes.iter().any(|mode| entry(mode).is_none());
+                let modes = format!("the modes of {name} = {}", spring.name);
+                let beside = |instead| (modes.as_str(), instead);
+                let pressed = moves && effects.axial_force != AxialForceKind::None;
+                let geometry = beside("[[segment]], whose geometry an axial force needs");
+                refuse(pressed, &axial, "None", geometry)?;
+                let turned = beside("the rotation of the contact, rotation, in each [[mode]]");
+                refuse(rubs && lacks(|mode| mode.rotation), FRICTION.0, "None", turned)?;
+                let touched = beside("the displacement there, pusher, in each [[mode]]");
+                refuse(moves && pushed && lacks(|mode| mode.pusher), &pusher, "None", touched)?;
+                let closed = beside("the displacement there, parallel, in each [[mode]]");
+                let parallel = moves && effects.parallel_contact && lacks(|mode| mode.parallel);
+                refuse(parallel, PARALLEL.0, "false", closed)?;
             }
-            let pressed = effects.axial_force != AxialForceKind::None;
-            let geometry = beside("[[segment]], whose geometry an axial force needs");
-            refuse(pressed, &axial, "None", geometry)?;
-            let touched = beside("the displacement there, pusher, in each [[mode]]");
-            refuse(pushed && lacks(|mode| mode.pusher), &pusher, "None", touched)?;
-            let closed = beside("the displacement there, parallel, in each [[mode]]");
-            let parallel = effects.parallel_contact && lacks(|mode| mode.parallel);
-            refuse(parallel, PARALLEL.0, "false", closed)?;
         }
         self.check_order()
     }

@@ -9,7 +9,7 @@ import matplotlib as mpl
 from relay_contact import pages
 from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
-from relay_contact.files import digest, read_toml
+from relay_contact.files import digest
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
@@ -19,7 +19,7 @@ from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.results import Assessment, Tested
 from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.words import HEAD, REASONS, at_rest, reasons, rows, time_text
-from relay_contact.spring import SPRING_FILES
+from relay_contact.spring import SPRING_FILES, by_modes
 
 FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}
 FILES = ("qualification.html", "qualification.csv", "sweeps.csv")
@@ -126,9 +126,10 @@ def replaced(values: Values) -> tuple[str, ...]:
     """Return the parameters that a file of the spring takes the place of."""
     if not values.get("beam.file"):
         return ()
-    by_modes = "mode" in read_toml(Path(str(values["beam.file"])))
+    if not by_modes(Path(str(values["beam.file"]))):
+        return SECTION
     # The spring of the fixed contact may be of that material.
-    return SECTION + CARRIED * by_modes + MATERIAL * (by_modes and not values.get("fixed.file"))
+    return SECTION + CARRIED + MATERIAL * (not values.get("fixed.file"))
 
 
 def inputs(component: Component, relay: Relay) -> pages.Table:

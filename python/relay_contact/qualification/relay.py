@@ -14,7 +14,7 @@ from relay_contact.qualification import distributions
 from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.parts import check_held
 from relay_contact.qualification.standards import Contacts, Monitor
-from relay_contact.spring import PREFIX, is_entry, known_of
+from relay_contact.spring import PREFIX, by_modes, is_entry, known_of
 
 OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
 """Beginnings of the names of parameters that the tests set: in the file of a relay they would contradict them."""
@@ -199,11 +199,11 @@ def moved(path: Path, content: Content, component: Component) -> dict[str, Value
             f"{path}:{schema.line(path, ('armature',))}: pusher: missing, by which the armature moves it"
         )
     file = {name: value for name, _, value in schema.leaves(content.parameters)}.get("beam.file", "")
-    by_modes = bool(file) and "mode" in read_toml(path.resolve().parent / str(file))
+    has_place = bool(file) and by_modes(path.resolve().parent / str(file))
     for name, own in tables.items():
         # With start values that nobody chose a verdict would be that of another relay.
         for entry in NEEDED[name]:
-            if entry not in own and not (by_modes and name == "pusher"):
+            if entry not in own and not (has_place and name == "pusher"):
                 raise RelayContactError(f"{path}:{schema.line(path, (name,))}: {name}.{entry}: missing")
     kind = "Armature" if "armature" in tables else "Prescribed"
     return {"effects.pusher": kind} | found

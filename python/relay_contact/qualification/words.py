@@ -73,9 +73,7 @@ def numbers(own: Margin | PartMargin, stated: bool) -> tuple[str, str]:
     """Return a margin and its interval if there is one, in words: not of what does not fail."""
     endless = own.margin >= MOST
     interval = f"{three(own.low)} to {three(own.high)}" if stated else UNSTATED
-    if endless and own.low > 1:
-        interval = ""
-    return f"> {MOST:g}" if endless else three(own.margin), interval
+    return f"> {MOST:g}" if endless else three(own.margin), "" if endless and own.low > 1 else interval
 
 
 def own_cells(finding: Finding) -> list[str]:
