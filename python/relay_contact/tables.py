@@ -2,7 +2,7 @@
 
 Before the line with the names of the columns there may be others; below it a line with their units. Between columns are
 commas, semicolons or tabs; with the last two the decimal sign may be a comma. Further columns are passed over. Lines
-that begin with # are remarks, and settings such as `# calibration = 0.01`.
+that begin with # are remarks, and settings such as `# calibration = 0.01`, before the names also without #.
 """
 
 import codecs
@@ -33,8 +33,8 @@ OTHERS = {"sec": "s", "msec": "ms", "usec": "us", "hz": "Hz", "khz": "kHz", "G":
 """Units as some programs write them."""
 CELL = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^\])]*)[\])]|\bin\s+(?P<word>\S+)|\s/\s*(?P<slash>\S+))?")
 """A name, with a unit as in `travel [mm]`, `travel (mm)`, `travel in mm` or `travel / mm`."""
-SETTING = re.compile(r"[^#]*#+([^=:]*)([=:])(.*)")
-"""A line that begins with #, with a name and a text."""
+SETTING = re.compile(r"(#*)([^=:]*)([=:])(.*)")
+"""A remark, or a line before the columns, with a name and a text."""
 SEPARATORS, BLANK = ";\t,", ' \t,;"'
 LARGE, BEGIN = 2**20, 2**16  # bytes of a file that is read at once, and of its begin
 ALIKE = 0.75  # of names, from which on one is taken for a slip in the other
@@ -187,9 +187,10 @@ def thorough(path: Path, known: Units, text: str | None = None) -> Table:
     texts: dict[str, dict[str, tuple[str, int]]] = {"=": {}, ":": {}}
     rows: list[tuple[int, list[str]]] = []
     for number, text in lines.items():
-        if text.strip(BLANK).startswith("#") and number != head:
-            if found := SETTING.match(text):
-                name, sign, value = (part.strip(BLANK) for part in found.groups())
+        if number < head or (number > head and text.strip(BLANK).startswith("#")):
+            # Measuring programs write `name: text` of their own, without #.
+            if (found := SETTING.match(text.strip(BLANK))) and (found[1] or found[3] == "="):
+                name, sign, value = (part.strip(BLANK) for part in found.groups()[1:])
                 texts[sign][name] = value, number
         elif number > head:
             rows.append((number, split(text, separator)))
