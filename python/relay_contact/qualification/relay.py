@@ -1,5 +1,6 @@
 """A relay as its file describes it: contacts, coil positions, and how well its parameters are known."""
 
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -281,6 +282,8 @@ def blow(component: Component, values: Values, changed: Values | None = None) ->
     time = STEP * np.insert(np.arange(2.0 * HALF + 1), HALF, HALF)
     course = np.repeat([size, -size], HALF + 1)
     with component.started({**values, **(changed or {})}) as contact, contact.explained():
+        # These forces are only compared: a warning of their error would be taken as one of the relay's tests.
+        contact.told = sys.maxsize
         rows = contact.drive(time, {"base.acceleration": course}, watched)
         return [float(value) for row in zip(*rows.values(), strict=True) for value in row]
 
