@@ -18,7 +18,7 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
-from relay_contact.qualification.page import inputs, write
+from relay_contact.qualification.page import inputs, warned, write
 from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
@@ -265,6 +265,9 @@ def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.Mo
     (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
     assert len([text for text in part.first.warnings if "not used" in text]) == 1
     assert "0.000123 m: not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    # Of all tests: these are named only where there are others.
+    (text,), calm = warned([part]), replace(part.first, test="other", warnings=[])
+    assert warned([part, replace(part, models=[calm])]) == [f"213 A, {part.first.position}: {text}"]
 
 
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")

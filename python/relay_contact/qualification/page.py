@@ -275,18 +275,26 @@ def versions(assessment: Assessment, component: Component) -> list[tuple[str, st
     ]
 
 
+def warned(tests: list[Tested]) -> list[str]:
+    """Return the first warning of each kind, and which tests it is of, unless of all."""
+    found = [each for tested in tests for each in tested.models]
+    kinds: dict[str, list[str]] = {}
+    for each in found:
+        several = f", {each.model}" if len(tests[0].models) > 1 else ""
+        for text in each.warnings:
+            kinds.setdefault(DIFFERENCE.sub("", text), [text]).append(f"{each.named}, {each.position}{several}")
+    return [text if len(of) == len(found) else f"{'; '.join(of)}: {text}" for text, *of in kinds.values()]
+
+
 def html(assessment: Assessment, component: Component, date: str) -> str:
     """Return the page."""
     relay, standard, tests = assessment.relay, assessment.standard, assessment.tests
     judged, not_judged = scope(relay, standard)
-    # The first of each kind.
-    warned = {DIFFERENCE.sub("", text): text
-              for tested in tests[::-1] for each in tested.models[::-1] for text in each.warnings}  # fmt: skip
     sources = [(test.name, str(test), test.clause, evidence_told(test.evidence)) for test in standard.tests]
     return pages.render(
         "qualification.html", title=f"{relay.title}: {standard.title}", relay=relay.title, standard=standard.title,
         counts=assessment.counts, date=date,
-        warnings=list(warned.values())[::-1], judged=judged, not_judged=not_judged,
+        warnings=warned(tests), judged=judged, not_judged=not_judged,
         margins=pages.svg(plots.margins(tests)),
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],
         head=HEAD, reasons=REASONS, fills=FILLS, several=len(relay.models) > 1, first_model=relay.models[0].name,
