@@ -16,6 +16,7 @@ import numpy as np
 from relay_contact.component import Component, Value, units
 from relay_contact.files import RelayContactError, fmu_path, page_path, read_toml, scenes
 from relay_contact.scene import Scene, run, write_table
+from relay_contact.spring import SPRING_FILES
 
 EXAMPLES = """examples:
   relay-contact list                                   scenes, relays and standards included
@@ -98,8 +99,12 @@ def run_scene(given: argparse.Namespace) -> None:
         name = component.settable(name.strip())
         if name in changes:
             raise RelayContactError(f"--set {text}: {name} is given twice")
-        changes[name] = component.read(name, value.strip())
-        words.append(f"{name}={value.strip()}")
+        value = value.strip()
+        changes[name] = component.read(name, value)
+        if name in SPRING_FILES and Path(value).is_file():
+            # Relative to where the command runs; its name alone is in those of table and figure.
+            changes[name], value = str(Path(value).resolve()), Path(value).name
+        words.append(f"{name}={value}")
     scene = Scene.read(given.scene, component).changed(component, changes)
     titled = ", ".join([scene.title, *words])
     names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))

@@ -2,6 +2,7 @@
 
 import gc
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -72,6 +73,14 @@ def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) 
     assert capsys.readouterr().err == "relay-contact: beam.lenght: no such variable; did you mean beam.length?\n"
     assert main(["list", "--variables", "contactLaw"]) == 0
     assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded, Rough]" in capsys.readouterr().out
+
+
+def test_the_command_takes_a_spring_file_from_where_it_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "own").mkdir()
+    shutil.copy(ROOT / "scenes/springs/tapered-cube.toml", tmp_path / "own/tapered.toml")
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "at-rest", "--set", "beam.file=own/tapered.toml"]) == 0
+    assert (tmp_path / "at-rest,beam.file=tapered.toml.csv").is_file()
 
 
 def test_the_command_tells_whether_a_contact_is_smooth_enough_for_hertz(
