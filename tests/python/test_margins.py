@@ -266,6 +266,7 @@ def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.Mo
     assert len([text for text in part.first.warnings if "not used" in text]) == 1
     assert "0.000123 m: not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
     # Of all tests: these are named only where there are others.
+    assert replace(part, models=[part.first, replace(part.first, notes=["coarse"])]).notes == ["213 A: coarse"]
     (text,), calm = warned([part]), replace(part.first, test="other", warnings=[])
     assert warned([part, replace(part, models=[calm])]) == [f"213 A, {part.first.position}: {text}"]
 
@@ -282,7 +283,7 @@ def test_inputs_that_a_spring_file_has_in_it_are_not_used(tmp_path: Path) -> Non
     own, shipped = (inputs(COMPONENT, Relay.read(path, COMPONENT))[1] for path in (relay, "finite-elements"))
     assert {row[0]: row[1:3] for row in own if row[0] in names} == {
         "beam.thickness": ["not used", "not used"], "beam.density": ["not used", "8300 kg/m³"],
-        "tip.mass": ["not used", "10 mg"], "tip.rotaryInertia": ["not used", "0 kg.m2"],
+        "tip.mass": ["not used", "10 mg"], "tip.rotaryInertia": ["not used", "0 kg m²"],
     }  # fmt: skip
     assert not {row[0] for row in shipped} & {*names}
 

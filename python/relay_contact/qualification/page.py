@@ -160,7 +160,7 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
         cells = [NOT_USED if name in names else text(values.get(name, component.start(name)))
                  for names, values in zip(without, columns.values(), strict=True)]  # fmt: skip
         told = distribution.told(relay.value(component, name)) if distribution else ""
-        found.append([name, *cells, told, "file" if name in own else "start"])
+        found.append([name, *cells, told, "file" if name in own else "start value"])
     for name, distribution in relay.uncertainty.items():
         if name not in component.variables:
             found.append([name, *["as in the spring file"] * len(columns), distribution.told(1.0), "file"])
@@ -172,7 +172,7 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
                          if other < one)  # fmt: skip
         if told:
             found.append([f"{one}, correlation", *[""] * len(columns), told, "file"])
-    return ("parameter", *columns, "uncertainty, 95 %", "by"), found
+    return ("parameter", *columns, "uncertainty, 95 %", "from"), found
 
 
 def springs(relay: Relay) -> list[tuple[str, str]]:

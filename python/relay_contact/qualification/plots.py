@@ -14,6 +14,7 @@ from matplotlib.textpath import text_to_path
 from relay_contact.component import Array
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, three
 from relay_contact.figures import GRAVITY as G
+from relay_contact.qualification.judgement import QUALITY
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
 from relay_contact.qualification.position import MOST
 from relay_contact.qualification.results import Finding, Tested
@@ -288,7 +289,9 @@ def record(finding: Finding) -> Figure:
         decibels = 20 * np.log10(response / required)
         srs.plot([], [], " ", label=f"{three(decibels.min())} to {three(decibels.max())} dB above it")
         srs.legend(loc="best")
-    srs.set(xlabel="frequency [Hz]", ylabel="peak response [g]", title="Shock response spectrum")
+    # That of a required one is with its level.
+    quality = "" if "required" in curves else f", Q = {QUALITY:g}"
+    srs.set(xlabel="frequency [Hz]", ylabel="peak response [g]", title=f"Shock response spectrum{quality}")
     name, rest = next(iter(finding.margin.rest.items()))
     scale, unit = (1e3, "mm") if name == OPEN else (100, "cN")
     at = np.array(curves["time"])

@@ -22,6 +22,7 @@ UNREAD = "† Read in a quotation of the standard. * From memory: not, or not al
 TOLD = {MODEL: "allowance for the model", CHANCE: CHANCE}
 UNSTATED = "none stated"
 """In place of an interval and a chance, where the relay's file has nothing that they could come from."""
+COARSE = "the coarse steps of the record, besides the uncertainties"
 LEAST_SHARE = 0.01  # of the variance, below which a parameter is not named
 
 
@@ -171,9 +172,10 @@ def reasons(tested: Tested) -> list[list[str]]:
     for each in tested.models:
         test = each.named + (f": {each.model}" if len(tested.models) > 1 else "")
         told = [""] * 4
-        if each.judged and each.judged.chance:
+        if each.judged:
             chance = each.judged.chance
-            told = [contributions(chance), tighten(chance), chance_text(chance), passes_text(each.judged)]
+            known = [contributions(chance), tighten(chance), chance_text(chance)] if chance else [COARSE, "", UNSTATED]
+            told = [*known, passes_text(each.judged)]
         found.append([test, limits(each), *told])
         if each.judged:
             others = {name: own.limits for name, own in each.judged.parts.items() if own.limits != each.limits}
