@@ -110,7 +110,7 @@ def run_scene(given: argparse.Namespace) -> None:
     names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))
     told = list(dict.fromkeys([*names, *TOLD]))
     result = run(scene, outputs=told, stop=given.stop, step=given.step, component=component, progress=True)
-    print(titled)
+    print(titled, "Ranges at communication points; step.* have the extremes between them:", sep="\n")
     width = max(map(len, result.columns))
     for name in names:
         values = result[name]
@@ -139,7 +139,7 @@ def write_parameters(given: argparse.Namespace) -> None:
 def qualify_relay(given: argparse.Namespace) -> None:
     """Test a relay as a standard asks, or under measured records, and print the verdicts."""
     from relay_contact.qualification import qualify
-    from relay_contact.qualification.page import FILES, PDF
+    from relay_contact.qualification.page import FILES, PDF, UNKNOWN
     from relay_contact.qualification.words import HEAD, MARKS, UNREAD, rows
 
     if not (given.standard or given.history):
@@ -162,7 +162,13 @@ def qualify_relay(given: argparse.Namespace) -> None:
     left = "; ".join(test.name for test in found.standard.left)
     print(f"{found.standard.title}: {found.counts}{': ' if left else ''}{left}")
     notes = dict.fromkeys(note for tested in found for note in tested.notes)
-    print(*(UNREAD,) * any(marks), *notes, *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
+    print(
+        *(UNKNOWN,) * found.relay.is_certain,
+        *(UNREAD,) * any(marks),
+        *notes,
+        *(folder / name for name in (*FILES, *(PDF,) * given.pdf)),
+        sep="\n",
+    )
 
 
 def compare_runs(given: argparse.Namespace) -> None:

@@ -22,8 +22,9 @@ from relay_contact.qualification.page import inputs, warned, write
 from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
+from relay_contact.qualification.results import Chance
 from relay_contact.qualification.trials import Specimen, pieces, steady
-from relay_contact.qualification.words import failures, passes_text
+from relay_contact.qualification.words import failures, passes_text, tighten
 
 READ: Any = "read in the standard"
 SINE = Sine("sine", "", READ, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
@@ -244,6 +245,12 @@ def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch
     for text in ("12.345 mg", "± 3.77 %", "RelayContact 0.", "rigid relay", "contact.moving.poissonRatio"):
         assert text in page
     assert "friction.coefficient" not in page
+
+
+def test_a_parameter_that_hardly_widens_an_interval_is_not_one_to_measure() -> None:
+    known = Chance(0.5, 0.4, 0.6, {}, {"tip.mass": 0.4, "contact.overtravel": 0.05}, 0, 0.0)
+    assert tighten(known) == "tip.mass, 40.0 % of the variance"
+    assert tighten(replace(known, indices={"tip.mass": 0.05})) == "no parameter has 10 % of the variance"
 
 
 def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,8 +47,8 @@ the margins of {many} further draws follow from these. At both ends of each para
 limit, the component searches the level itself. If the interval includes 1, the verdict is undecided. If there are
 several models, a test is passed only if all pass, and failed only if all fail.""",
     "Columns": """Fails first: the contact that fails at the margin. In the test: which contacts fail at the level of
-the test, and the longest failure. Left at least: force of the closed contact and gap of the open one, relative to those
-at rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
+the test, and the longest failure. Least force or gap: of the closed contact and of the open one, relative to those at
+rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
 number of draws and the deviation of the component from them. To measure or tighten: the fraction of the variance of the
 margin that vanishes once the parameter is known (first-order Sobol index). Passes from: the overtravel of the closed
 contact, or the gap if only an open one is judged, from which on the whole interval is above 1, with the width it has
@@ -195,19 +195,21 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     relay = assessment.relay
     mine = [tested for tested in assessment if tested.first.position == name]
     known = next((tested.first for tested in mine if tested.judged), None)
-    forms = {form(component, {**values, **model.parameters}): None for model in relay.models}
-    count = len(relay.models)
+    count, forms = len(relay.models), dict[str, list[str]]()
+    for model in relay.models:
+        forms.setdefault(form(component, {**values, **model.parameters}), []).append(model.name)
+    described = "; ".join(f"{', '.join(names)}: {text}" if count > 1 else text for text, names in forms.items())
     several = f"The margins of {count} models show how far another form of the model moves a margin."
     single = "One model is judged: how far another form of the model would move the margin is not known."
     told = several if count > 1 else single
-    covered = ALONE if relay.uncertainty or any(model.uncertainty for model in relay.models) else UNKNOWN
+    covered = UNKNOWN if relay.is_certain else ALONE
     cells = [
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
     notes = [note for tested in mine for note in tested.notes]
     context = {
-        "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {'; '.join(forms)}.",
+        "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {described}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,
         "figures": [pages.svg(figure) for figure in plots.position_figures(mine, assessment.standard.contacts)],
     }  # fmt: skip

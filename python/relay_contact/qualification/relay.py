@@ -106,6 +106,11 @@ class Relay:
     digest: str = ""
     """Of the file."""
 
+    @property
+    def is_certain(self) -> bool:
+        """Return whether nothing is stated that an interval could come from."""
+        return not self.uncertainty and not any(model.uncertainty for model in self.models)
+
     def value(self, component: Component, name: str) -> float:
         """Return the value of a parameter in the first position; of an entry a factor of 1."""
         return component.value(next(iter(self.positions.values())), name)
