@@ -198,10 +198,10 @@ pub enum Remark {
         number(*threshold), number(*open)
     )]
     NoInterruption { threshold: f64, open: f64 },
-    /// Modes that end below what a blow excites.
+    /// Modes that end below what an impact excites.
     #[error(
-        "{name} = {file}: its modes end at {highest:.0} Hz, a blow of the contact excites the spring up to {reached:.0} Hz; \
-         forces of blows, and what rings on after them, are right only as far as the modes reach"
+        "{name} = {file}: its modes end at {highest:.0} Hz, an impact of the contact excites the spring up to {reached:.0} Hz; \
+         forces of impacts, and what rings on after them, are right only as far as the modes reach"
     )]
     FewModes {
         name: &'static str,

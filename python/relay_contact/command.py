@@ -16,11 +16,12 @@ import numpy as np
 from relay_contact.component import Component, Value, units
 from relay_contact.files import RelayContactError, fmu_path, page_path, read_toml, scenes
 from relay_contact.scene import Scene, run, write_table
+from relay_contact.spring import SPRING_FILES
 
 EXAMPLES = """examples:
-  relay-contact list                                   what comes along
+  relay-contact list                                   scenes, relays and standards included
   relay-contact list --relay paper                     is its contact smooth enough for Hertz's law?
-  relay-contact list --variables excitation            variables by name, with unit and start value
+  relay-contact list --variables excitation            variables whose names contain a text, with unit and start value
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
   relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
   relay-contact ssv paper-1khz --plain                 what the scene changes, for tools that read SSP 1.0
@@ -33,14 +34,15 @@ EXAMPLES = """examples:
 
 TOLD = ["contact.lastOpening", "contact.lastClosing", "chatter.count", "chatter.longestInterruption", "solver.steps"]
 """Outputs whose last value is printed."""
-IDENTIFY = """Find overtravel, stiffness, rivet mass and damping of a relay by measurements of a sample, with intervals;
-write the relay's file with them, and a page. The columns of a file tell what was measured (their units in brackets):
+IDENTIFY = """Find overtravel, stiffness, rivet mass and damping of a relay from measurements, with intervals.
+Write them into a copy of the relay's file, and onto a page. The columns of a file say what was measured, in which unit:
 
   travel [mm],force [cN]                          static force over travel from the working position
   time [ms],displacement [um]                     ring-down of the spring off its contact (or velocity; or force)
   frequency [Hz],acceleration [g],force [cN]      frequency response (or displacement, velocity)
-  frequency [Hz],level [g]                        level of a sine from which on the contact chatters
-  speed [mm/s],bounce [us]                        first bounce after the contact closed at a constant speed
+  overtravel [mm],frequency [Hz]                  lowest frequency of the closed contact over overtravel
+  frequency [Hz],level [g]                        level of a sine at which the contact begins to chatter
+  speed [mm/s],bounce [us]                        length of the first bounce after closing at a constant speed
 
 Lines before the columns may say: # position = coil energised   # contact = closed   # calibration = 0.01
 or set a parameter of the component for this measurement: # chatter.minimumDuration = 1e-6
@@ -48,9 +50,17 @@ or set a parameter of the component for this measurement: # chatter.minimumDurat
 
 
 def list_all(given: argparse.Namespace) -> None:
-    """Print what comes along and what the contact of a relay is like, or variables."""
+    """Print variables, what the contact of a relay is like, or the files included."""
     if given.variables is not None:
         list_variables(Component(given.fmu), given.variables)
+        return
+    if given.relay:
+        from relay_contact.qualification.relay import Relay
+        from relay_contact.qualification.roughness import told
+
+        component = Component(given.fmu)
+        relay = Relay.read(given.relay, component)
+        print(f"{relay.title}:", *told(component, relay), sep="\n  ")
         return
     print(f"component: {given.fmu}")
     from relay_contact.qualification import relays, standards
@@ -60,13 +70,6 @@ def list_all(given: argparse.Namespace) -> None:
         width = max(map(len, files), default=0)
         for name, path in files.items():
             print(f"  {name:{width}}  {read_toml(path).get('title', '')}")
-    if given.relay:
-        from relay_contact.qualification.relay import Relay
-        from relay_contact.qualification.roughness import told
-
-        component = Component(given.fmu)
-        relay = Relay.read(given.relay, component)
-        print(f"\n{relay.title}:", *told(component, relay), sep="\n  ")
 
 
 def list_variables(component: Component, text: str) -> None:
@@ -96,14 +99,18 @@ def run_scene(given: argparse.Namespace) -> None:
         name = component.settable(name.strip())
         if name in changes:
             raise RelayContactError(f"--set {text}: {name} is given twice")
-        changes[name] = component.read(name, value.strip())
-        words.append(f"{name}={value.strip()}")
+        value = value.strip()
+        changes[name] = component.read(name, value)
+        if name in SPRING_FILES and Path(value).is_file():
+            # Relative to where the command runs; its name alone is in those of table and figure.
+            changes[name], value = str(Path(value).resolve()), Path(value).name
+        words.append(f"{name}={value}")
     scene = Scene.read(given.scene, component).changed(component, changes)
     titled = ", ".join([scene.title, *words])
     names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))
     told = list(dict.fromkeys([*names, *TOLD]))
     result = run(scene, outputs=told, stop=given.stop, step=given.step, component=component, progress=True)
-    print(titled)
+    print(titled, "Ranges at communication points; step.* have the extremes between them:", sep="\n")
     width = max(map(len, result.columns))
     for name in names:
         values = result[name]
@@ -132,7 +139,7 @@ def write_parameters(given: argparse.Namespace) -> None:
 def qualify_relay(given: argparse.Namespace) -> None:
     """Test a relay as a standard asks, or under measured records, and print the verdicts."""
     from relay_contact.qualification import qualify
-    from relay_contact.qualification.page import FILES, PDF
+    from relay_contact.qualification.page import FILES, PDF, UNKNOWN
     from relay_contact.qualification.words import HEAD, MARKS, UNREAD, rows
 
     if not (given.standard or given.history):
@@ -155,7 +162,13 @@ def qualify_relay(given: argparse.Namespace) -> None:
     left = "; ".join(test.name for test in found.standard.left)
     print(f"{found.standard.title}: {found.counts}{': ' if left else ''}{left}")
     notes = dict.fromkeys(note for tested in found for note in tested.notes)
-    print(*(UNREAD,) * any(marks), *notes, *(folder / name for name in (*FILES, *(PDF,) * given.pdf)), sep="\n")
+    print(
+        *(UNKNOWN,) * found.relay.is_certain,
+        *(UNREAD,) * any(marks),
+        *notes,
+        *(folder / name for name in (*FILES, *(PDF,) * given.pdf)),
+        sep="\n",
+    )
 
 
 def compare_runs(given: argparse.Namespace) -> None:
@@ -168,7 +181,7 @@ def compare_runs(given: argparse.Namespace) -> None:
 
 
 def identify_relay(given: argparse.Namespace) -> None:
-    """Find parameters of a relay by measurements, and print them."""
+    """Find parameters of a relay from measurements, and print them."""
     from relay_contact.identification import identify
     from relay_contact.identification.report import FILES, HEAD, cells, silent
 
@@ -249,7 +262,7 @@ def line() -> argparse.ArgumentParser:
     add(
         "--relay",
         metavar="FILE",
-        help="a relay: the size of its contact, and whether it is smooth enough for Hertz's law",
+        help="only the contact of this relay: its size, and whether it is smooth enough for Hertz's law",
     )
 
     about = "Run a scene; write its outputs as a table (CSV, SI units) and as a figure (PNG)."
@@ -263,13 +276,15 @@ def line() -> argparse.ArgumentParser:
     add("--step", type=positive, metavar="SECONDS", help="communication step (the scene's)")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
-    about = "Test a relay as a standard asks: verdicts, and margins with their uncertainty, as a page and tables."
-    add = command("qualify", qualify_relay, "test a relay as a standard asks", description=about)
+    about = (
+        "Test a relay by a standard or a measured record. Write verdicts, margins and intervals as a page and tables."
+    )
+    add = command("qualify", qualify_relay, "test a relay by a standard or a record", description=about)
     add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
     add("--standard", metavar="NAME", help="name of a standard, or path of a file of your own")
     text = "a measured acceleration as a test: CSV, MDF4, UFF58, TDMS or .mat, each channel by itself; may be repeated"
     add("--history", action="append", default=[], metavar="FILE", help=text)
-    add("--unit", choices=["g", "m/s2"], default="", help="unit of a record that does not tell it")
+    add("--unit", choices=["g", "m/s2"], default="", help="unit of a record that does not state it")
     add("--rate", type=positive, metavar="HZ", help="samples a second of a record without time")
     text = "only tests with TEXT in their names; may be repeated"
     add("--test", action="append", default=[], metavar="TEXT", help=text)
@@ -286,31 +301,33 @@ def line() -> argparse.ArgumentParser:
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
     add("--out", type=Path, metavar="FOLDER", help=text)
 
-    about = "Write what scenes change as parameter sets of SSP 1.0, NAME.ssv."
+    about = "Write the parameters that scenes change as parameter sets of SSP 1.0, NAME.ssv."
     add = command("ssv", write_parameters, "write scenes as SSP parameter sets", description=about)
-    add("scene", nargs="*", help="names or files of scenes; all that come along, if there are none")
+    add("scene", nargs="*", help="names or files of scenes; without them all scenes included")
     add("--plain", action="store_true", help="for the component in which all numbers are Reals: NAME-plain.ssv")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
-    raw, text = argparse.RawDescriptionHelpFormatter, "find parameters of a relay by measurements"
+    raw, text = argparse.RawDescriptionHelpFormatter, "find parameters of a relay from measurements"
     add = command("identify", identify_relay, text, description=IDENTIFY, formatter_class=raw)
     add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
     add("--data", required=True, nargs="+", metavar="CSV", help="files of measurements")
-    text = "seek this one instead of the usual; may be repeated; spring.thickness and the like are entries of its file"
+    text = "find this one instead of the usual ones; may be repeated; spring.thickness: an entry of the spring file"
     add("--parameter", action="append", metavar="NAME", help=text)
     add("--out", type=Path, metavar="FOLDER", help="folder for what is written (identification-RELAY)")
 
-    about = "Open a page that simulates as one drags sliders, from its file: force, resistance, level that opens."
-    add = command("explore", explore, "sliders and curves in the browser", description=about, parents=[])
+    about = (
+        "Open a page in the browser that simulates as sliders move: force, resistance, level that opens the contact."
+    )
+    add = command("explore", explore, "simulate in the browser, with sliders", description=about, parents=[])
     add("--print", action="store_true", help="only print its address")
 
     about = "Compare a run with a chatter log or a measured resistance: counts, durations and a figure."
-    add = command("compare", compare_runs, "a run beside a measurement", description=about, parents=[])
+    add = command("compare", compare_runs, "compare a run with a measurement", description=about, parents=[])
     add("run", type=Path, help="table of `relay-contact run`, with contact.resistance")
     add("measured", type=Path, help="CSV: start and duration of interruptions, or time and resistance")
     text = "resistance [Ohm] above which the contact is interrupted (%(default)g)"
     add("--threshold", type=positive, default=60.0, metavar="OHM", help=text)
-    text = "time [s] to add to that measured; without it both begin at their first interruption"
+    text = "time [s] to add to the measured one; without it both are aligned at their first interruption"
     add("--shift", type=finite, metavar="SECONDS", help=text)
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
@@ -319,7 +336,13 @@ def line() -> argparse.ArgumentParser:
     add("table", type=Path, help="CSV file with a column `time`")
     add("--title", default="", help="title of the figure")
     sweep = ("FIRST", "LAST", "START", "DURATION")
-    add("--sweep", type=finite, nargs=4, metavar=sweep, help="over the frequency of a sweep instead of time [Hz, s]")
+    add(
+        "--sweep",
+        type=finite,
+        nargs=4,
+        metavar=sweep,
+        help="draw over the frequency of a logarithmic sweep [Hz, s] instead of time",
+    )
     return whole
 
 

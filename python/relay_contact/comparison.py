@@ -41,6 +41,11 @@ class Interruptions:
     """How many the component counted itself, if the table has it."""
 
     @property
+    def times(self) -> Array:
+        """Return the times (s) that are known: of a log those of its interruptions."""
+        return self.time if len(self.time) else np.append(self.start, self.start + self.duration)
+
+    @property
     def figures(self) -> dict[str, float]:
         """Return number, longest, median and total duration (s); not durations where more were counted than seen."""
         some = len(self.duration) > 0
@@ -148,11 +153,12 @@ def compare(
         notes.append(f"The measurement is shifted by {shift:.6g} s, so that both begin at their first interruption."
                      if some else "The measurement is not shifted: not both are interrupted.")  # fmt: skip
     other = Interruptions(other.start + shift, other.duration, other.time + shift, other.resistance)
-    beyond = int(((other.start > own.time[-1]) | (other.start + other.duration < own.time[0])).sum())
-    if beyond:
-        notes.append(
-            f"Of the measured interruptions {beyond} are outside the time of the run, and counted all the same."
-        )
+    for name, each, record, times in ((MEASURED, other, "run", own.time), (SIMULATED, own, "measurement", other.times)):
+        # A log without interruptions does not say when it was.
+        outside = [(each.start > times.max()) | (each.start + each.duration < times.min())] if len(times) else []
+        if beyond := int(np.sum(outside)):
+            text = f"{beyond} are outside the time of the {record}, and counted all the same"
+            notes.append(f"Of the {name} interruptions {text}.")
     paths = [out / name for name in FILES] if out else []
     found = Comparison(own, other, notes, paths)
     if out:
@@ -187,12 +193,6 @@ def draw(found: Comparison, threshold: float, path: Path) -> None:
         course.set(yticks=[0.5, 1.5], yticklabels=[SIMULATED, MEASURED], ylim=(2, 0), ylabel="interrupted")
     durations.set(xlabel="time [ms]", ylabel="duration [µs]", ylim=(0, 1.1 * durations.get_ylim()[1]))
     figure.legend(*durations.get_legend_handles_labels(), loc="outside upper center", ncols=2, frameon=False)
-    times = [
-        found.simulated.time,
-        found.measured.time,
-        found.measured.start,
-        found.measured.start + found.measured.duration,
-    ]
-    shown = np.concatenate(times)
+    shown = np.append(found.simulated.times, found.measured.times)
     course.set_xlim(1e3 * shown.min(), 1e3 * shown.max())
     figure.savefig(path, dpi=130)

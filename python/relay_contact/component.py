@@ -28,7 +28,8 @@ from relay_contact.spring import OF_FILES, applied, is_entry
 
 DIFFERENCE = re.compile(r"\S*[/\\]\S*|\d[\d.e+-]*")
 """Paths and numbers, by which two warnings may differ that say the same."""
-SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³", "1": ""}
+SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m/s2": "m/s²", "kg/m3": "kg/m³",
+         "kg.m2": "kg m²", "Ohm.m": "Ω m", "N/um": "N/µm", "1": ""}  # fmt: skip
 
 KEPT: ContextVar[dict[str, str] | None] = ContextVar("warnings", default=None)
 """Where warnings are kept of what runs beside others, by their kind; those of the rest are with the component."""

@@ -68,7 +68,7 @@ pub(super) enum Failure {
     /// A force that may be wrong by more than the tolerance. The step is done.
     #[error(
         "at {} s contact.force may be wrong by more than the tolerance {tolerance:e} (estimate: solver.forceError = {error:.1e}): \
-         errors grow with each closing of this contact, or {modes} modes are too few for its blows. Not reported again",
+         errors grow with each closing of this contact, or {modes} modes are too few for its impacts. Not reported again",
         number(*time)
     )]
     Inaccurate {

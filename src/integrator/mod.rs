@@ -85,13 +85,13 @@
 //! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times `m^2` over the
 //!   largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration the error of the
 //!   quadrature, `S / 2 (S - 1)!^2 / (2 S - 1)!` times `m_a^2` over the largest acceleration;
-//! - where inputs have just changed forces bend, and a defect that passes through zero shows nothing of it: there `m` is at least what
-//!   the polynomials through fewer nodes let expect;
 //! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`, which falls with
 //!   the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and
 //!   Approximation Practice, 2013, chapters 8 and 19).
 //!
-//! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it. Just after a
+//! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it. Where inputs
+//! have just changed, forces bend, and an `m` that passes through zero shows nothing of it: there `m` is at least what the
+//! polynomials through fewer nodes let expect. Just after a
 //! closing, within [`constants::NEAR_BLOW`] steps of it, the sum counts [`constants::AFTER_BLOW`] times. In flight the estimate is what
 //! `m_a` and the quadrature do to the approach, times the stiffness the contact would have at the force scale.
 //!

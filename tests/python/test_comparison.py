@@ -51,6 +51,11 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert moved.measured.start == pytest.approx(STARTS + 1, abs=1e-9)
     assert any("3 are outside the time of the run" in note for note in moved.notes)
     assert not any("outside" in note for note in found.notes)
+    # A log of less time than the run.
+    log.write_text("start [ms],duration [us]\n1,100\n3,40\n")
+    assert any("Of the simulated interruptions 1 are outside" in note for note in compare(run, log).notes)
+    log.write_text("start [ms],duration [us]\n")
+    assert compare(run, log).rows[0] == ["count", "3", "0", ""]
 
 
 def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:

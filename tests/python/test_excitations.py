@@ -16,9 +16,11 @@ from relay_contact import Array, RelayContactError, Values
 from relay_contact.command import main
 from relay_contact.qualification import Relay, Standard, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
+from relay_contact.qualification.page import UNKNOWN
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
 from relay_contact.qualification.trials import Piece, Specimen, eased, noise, pieces
+from relay_contact.qualification.words import COARSE
 
 G = 9.80665
 READ: Any = "from memory"
@@ -173,6 +175,9 @@ def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.C
         assert bool(low) == (name != "calm")
         assert float(low or 0) < exact
     assert "period" not in found["rate 48000"]["notes"]
+    assert UNKNOWN in printed
+    # In place of contributions and chance.
+    assert page.count(COARSE) == 3
     assert "> 1000 " in printed
     assert float(found["calm"]["margin"]) == 1000
 

@@ -49,6 +49,8 @@ def test_what_a_laboratory_measures_gives_the_parameters(
     assert re.search(r"\d\d predictions of measurements", progress)
     # Of the stiff contact, damping is not felt while it stays closed.
     assert "contact.damping: not determined: the data hardly depend on it" in printed
+    assert "the model 'published force is the elastic force' of the relay's file keeps its own" in printed
+    assert "the model 'with friction'" not in printed
     page = (tmp_path / "found/identification.html").read_text(encoding="utf-8")
     assert page.count("<svg") == 1
     assert (tmp_path / "found/identification.png").read_bytes().startswith(b"\x89PNG")

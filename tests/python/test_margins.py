@@ -18,12 +18,13 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
-from relay_contact.qualification.page import inputs, write
+from relay_contact.qualification.page import inputs, warned, write
 from relay_contact.qualification.parts import CLOSED
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
+from relay_contact.qualification.results import Chance
 from relay_contact.qualification.trials import Specimen, pieces, steady
-from relay_contact.qualification.words import failures, passes_text
+from relay_contact.qualification.words import failures, passes_text, tighten
 
 READ: Any = "read in the standard"
 SINE = Sine("sine", "", READ, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
@@ -246,6 +247,12 @@ def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch
     assert "friction.coefficient" not in page
 
 
+def test_a_parameter_that_hardly_widens_an_interval_is_not_one_to_measure() -> None:
+    known = Chance(0.5, 0.4, 0.6, {}, {"tip.mass": 0.4, "contact.overtravel": 0.05}, 0, 0.0)
+    assert tighten(known) == "tip.mass, 40.0 % of the variance"
+    assert tighten(replace(known, indices={"tip.mass": 0.05})) == "no parameter has 10 % of the variance"
+
+
 def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Told once, kept by each result; also the one that every draw repeats with another file."""
     monkeypatch.setattr(positions, "DRAWS", 16)
@@ -265,6 +272,10 @@ def test_warnings_reach_results_and_pages(tmp_path: Path, monkeypatch: pytest.Mo
     (part,) = qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
     assert len([text for text in part.first.warnings if "not used" in text]) == 1
     assert "0.000123 m: not used" in (tmp_path / "qualification.html").read_text(encoding="utf-8")
+    # Of all tests: these are named only where there are others.
+    assert replace(part, models=[part.first, replace(part.first, notes=["coarse"])]).notes == ["213 A: coarse"]
+    (text,), calm = warned([part]), replace(part.first, test="other", warnings=[])
+    assert warned([part, replace(part, models=[calm])]) == [f"213 A, {part.first.position}: {text}"]
 
 
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
@@ -279,7 +290,7 @@ def test_inputs_that_a_spring_file_has_in_it_are_not_used(tmp_path: Path) -> Non
     own, shipped = (inputs(COMPONENT, Relay.read(path, COMPONENT))[1] for path in (relay, "finite-elements"))
     assert {row[0]: row[1:3] for row in own if row[0] in names} == {
         "beam.thickness": ["not used", "not used"], "beam.density": ["not used", "8300 kg/m³"],
-        "tip.mass": ["not used", "10 mg"], "tip.rotaryInertia": ["not used", "0 kg.m2"],
+        "tip.mass": ["not used", "10 mg"], "tip.rotaryInertia": ["not used", "0 kg m²"],
     }  # fmt: skip
     assert not {row[0] for row in shipped} & {*names}
 

@@ -15,6 +15,7 @@ from relay_contact.qualification.judgement import searched, transient
 from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, all_parts
 from relay_contact.qualification.position import Position
+from relay_contact.qualification.relay import Relay
 
 G = 9.80665
 ARMATURE: dict[str, float] = {
@@ -223,6 +224,13 @@ def test_page_and_tables_name_the_parts(assessed: Assessment) -> None:
     assert (table["fails first"] == CORE).all()
     assert (table["closed contact least force"] > 0).any()
     assert f"{CLOSED} interrupted" in table
+
+
+def test_reading_a_relay_tells_no_error_of_a_force(recwarn: pytest.WarningsRecorder) -> None:
+    """What is found out by a blow harder than any test is not a warning of a test."""
+    COMPONENT.told.clear()
+    Relay.read("power-changeover", COMPONENT)
+    assert not [str(each.message) for each in recwarn]
 
 
 def test_a_draw_that_does_not_hold_the_armature_fails() -> None:

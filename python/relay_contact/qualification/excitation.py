@@ -248,7 +248,7 @@ class Sine(Test):
 
     def __str__(self) -> str:
         """Describe the level."""
-        stroke = f"{three(1e3 * self.double_amplitude)} mm" if self.double_amplitude else ""
+        stroke = f"{three(1e3 * self.double_amplitude)} mm peak to peak" if self.double_amplitude else ""
         level = " or ".join(each for each in (f"{three(self.acceleration)} g" if self.acceleration else "", stroke)
                             if each)  # fmt: skip
         low, high = self.band

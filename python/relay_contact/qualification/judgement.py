@@ -94,7 +94,7 @@ class Seen:
     """Of the contact."""
 
 
-ENDLESS = Level(MOST, [], MOST, "", "the test hardly shakes it")
+ENDLESS = Level(MOST, [], MOST, "", "hardly moved by the test")
 Found = tuple[dict[str, Level], Seen]
 """The levels that fail, by part, and what happened at that of the test."""
 
@@ -144,7 +144,7 @@ def vibration(position: Position, test: Sine, points: int) -> Found:
         at = int(factors.argmin())
         limits = bound(response, test, at, len(known), frequency)
         if weakest[name] != expected[name]:
-            limits = "fails at the level of the test where linear theory does not expect it"
+            limits = "fails at the level of the test where linear theory predicts no failure"
         levels[name] = Level(factor, decides, float(factors[at]), f"{three(frequency)} Hz", limits)
     seen = Seen(
         failed={name: max(each) for name, each in lengths.items() if any(each)},
@@ -222,10 +222,11 @@ def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Arra
     half = response.frequency[np.searchsorted(share, [0.25, 0.75])]
     moving, rest = ("motion", "gap") if specimen.is_open else ("force", "preload")
     rest = rest if position.part == CONTACT else "force at rest"
-    limits = f"half of the power of the {moving} is there; {three(rms / response.reserve)} of the {rest} rms"
+    weakest = f"{three(half[0])} to {three(half[1])} Hz"
+    part_of_rest = three(rms / response.reserve)
+    limits = f"half of the variance of the {moving} lies at {weakest}; its rms is {part_of_rest} of the {rest}"
     if eased > 1:
         limits += f"; clipping raises the level by {three(100 * (eased - 1))} %"
-    weakest = f"{three(half[0])} to {three(half[1])} Hz"
     return Level(linear * part * eased, decides, linear * eased, weakest, limits), lengths, rows
 
 
@@ -309,11 +310,11 @@ def words(position: Position, test: Transient, way: str, piece: Piece, start: fl
     if isinstance(test, Shock):
         slow = response.reserve / max(response.gain[0] * G * test.acceleration, 1e-300) / piece.guess
         of = " of the spring" if position.part == CONTACT else ""
-        return "", f"inertia{of}, {three(slow)} times that of a slow shock", f"{way} direction"
+        return "", f"inertia{of}; dynamic amplification {three(slow)}", f"{way} direction"
     change = test.directions[way] * response.change(piece.course.sampled())
     dip = STEP * int(change.argmin()) + piece.begin + start
     share = float(np.abs(change).max() / max(response.gain[0] * np.abs(piece.course.acceleration).max(), 1e-300))
-    limits = f"dip of {three(share)} times what the peak acceleration there would make slowly"
+    limits = f"dip; dynamic amplification {three(share)} of the peak acceleration there"
     told = f"{way} direction" if way in DIRECTIONS else way
     return f"near {dip:.6g} s", limits, f"{told}, at {dip:.6g} s"
 

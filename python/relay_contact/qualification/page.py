@@ -47,8 +47,8 @@ the margins of {many} further draws follow from these. At both ends of each para
 limit, the component searches the level itself. If the interval includes 1, the verdict is undecided. If there are
 several models, a test is passed only if all pass, and failed only if all fail.""",
     "Columns": """Fails first: the contact that fails at the margin. In the test: which contacts fail at the level of
-the test, and the longest failure. Left at least: force of the closed contact and gap of the open one, relative to those
-at rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
+the test, and the longest failure. Least force or gap: of the closed contact and of the open one, relative to those at
+rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
 number of draws and the deviation of the component from them. To measure or tighten: the fraction of the variance of the
 margin that vanishes once the parameter is known (first-order Sobol index). Passes from: the overtravel of the closed
 contact, or the gap if only an open one is judged, from which on the whole interval is above 1, with the width it has
@@ -160,7 +160,7 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
         cells = [NOT_USED if name in names else text(values.get(name, component.start(name)))
                  for names, values in zip(without, columns.values(), strict=True)]  # fmt: skip
         told = distribution.told(relay.value(component, name)) if distribution else ""
-        found.append([name, *cells, told, "file" if name in own else "start"])
+        found.append([name, *cells, told, "file" if name in own else "start value"])
     for name, distribution in relay.uncertainty.items():
         if name not in component.variables:
             found.append([name, *["as in the spring file"] * len(columns), distribution.told(1.0), "file"])
@@ -172,7 +172,7 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
                          if other < one)  # fmt: skip
         if told:
             found.append([f"{one}, correlation", *[""] * len(columns), told, "file"])
-    return ("parameter", *columns, "uncertainty, 95 %", "by"), found
+    return ("parameter", *columns, "uncertainty, 95 %", "from"), found
 
 
 def springs(relay: Relay) -> list[tuple[str, str]]:
@@ -195,19 +195,21 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     relay = assessment.relay
     mine = [tested for tested in assessment if tested.first.position == name]
     known = next((tested.first for tested in mine if tested.judged), None)
-    forms = {form(component, {**values, **model.parameters}): None for model in relay.models}
-    count = len(relay.models)
+    count, forms = len(relay.models), dict[str, list[str]]()
+    for model in relay.models:
+        forms.setdefault(form(component, {**values, **model.parameters}), []).append(model.name)
+    described = "; ".join(f"{', '.join(names)}: {text}" if count > 1 else text for text, names in forms.items())
     several = f"The margins of {count} models show how far another form of the model moves a margin."
     single = "One model is judged: how far another form of the model would move the margin is not known."
     told = several if count > 1 else single
-    covered = ALONE if relay.uncertainty or any(model.uncertainty for model in relay.models) else UNKNOWN
+    covered = UNKNOWN if relay.is_certain else ALONE
     cells = [
         {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
         for tested in mine for number, row in enumerate(rows(tested))
     ]  # fmt: skip
     notes = [note for tested in mine for note in tested.notes]
     context = {
-        "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {'; '.join(forms)}.",
+        "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {described}.",
         "rows": cells, "reasons": [row for tested in mine for row in reasons(tested)], "notes": notes,
         "figures": [pages.svg(figure) for figure in plots.position_figures(mine, assessment.standard.contacts)],
     }  # fmt: skip
@@ -275,18 +277,26 @@ def versions(assessment: Assessment, component: Component) -> list[tuple[str, st
     ]
 
 
+def warned(tests: list[Tested]) -> list[str]:
+    """Return the first warning of each kind, and which tests it is of, unless of all."""
+    found = [each for tested in tests for each in tested.models]
+    kinds: dict[str, list[str]] = {}
+    for each in found:
+        several = f", {each.model}" if len(tests[0].models) > 1 else ""
+        for text in each.warnings:
+            kinds.setdefault(DIFFERENCE.sub("", text), [text]).append(f"{each.named}, {each.position}{several}")
+    return [text if len(of) == len(found) else f"{'; '.join(of)}: {text}" for text, *of in kinds.values()]
+
+
 def html(assessment: Assessment, component: Component, date: str) -> str:
     """Return the page."""
     relay, standard, tests = assessment.relay, assessment.standard, assessment.tests
     judged, not_judged = scope(relay, standard)
-    # The first of each kind.
-    warned = {DIFFERENCE.sub("", text): text
-              for tested in tests[::-1] for each in tested.models[::-1] for text in each.warnings}  # fmt: skip
     sources = [(test.name, str(test), test.clause, evidence_told(test.evidence)) for test in standard.tests]
     return pages.render(
         "qualification.html", title=f"{relay.title}: {standard.title}", relay=relay.title, standard=standard.title,
         counts=assessment.counts, date=date,
-        warnings=list(warned.values())[::-1], judged=judged, not_judged=not_judged,
+        warnings=warned(tests), judged=judged, not_judged=not_judged,
         margins=pages.svg(plots.margins(tests)),
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],
         head=HEAD, reasons=REASONS, fills=FILLS, several=len(relay.models) > 1, first_model=relay.models[0].name,

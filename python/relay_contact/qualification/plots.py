@@ -14,6 +14,7 @@ from matplotlib.textpath import text_to_path
 from relay_contact.component import Array
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, three
 from relay_contact.figures import GRAVITY as G
+from relay_contact.qualification.judgement import QUALITY
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
 from relay_contact.qualification.position import MOST
 from relay_contact.qualification.results import Finding, Tested
@@ -205,10 +206,10 @@ def sweeps(rows: list[Axes], findings: list[Finding], contacts: Contacts) -> Non
         told = f"{name} {FAILURES[name]}, limit {1e6 * limits[name]:g} µs"
         length.plot([], [], DASHES[name], color=GREY, label=told)
         length.axhline(1e6 * limits[name], color=GREY, linestyle=DASHES[name], linewidth=0.6)
-    above(left, "What is left at least in steady vibration")
+    above(left, "Least force and gap in steady vibration")
     if within:
         left.legend(**within)
-    left.set(ylabel="part of rest [%]", ylim=(-5, 105))
+    left.set(ylabel="of that at rest [%]", ylim=(-5, 105))
     above(length, "Longest failure")
     length.set(ylim=(0, max(1.5e6 * limits[next(iter(findings[0].margin.rest))], 1.25 * most)))
     length.set(ylabel="duration [µs]", xlabel="frequency [Hz]")
@@ -288,7 +289,9 @@ def record(finding: Finding) -> Figure:
         decibels = 20 * np.log10(response / required)
         srs.plot([], [], " ", label=f"{three(decibels.min())} to {three(decibels.max())} dB above it")
         srs.legend(loc="best")
-    srs.set(xlabel="frequency [Hz]", ylabel="peak response [g]", title="Shock response spectrum")
+    # That of a required one is with its level.
+    quality = "" if "required" in curves else f", Q = {QUALITY:g}"
+    srs.set(xlabel="frequency [Hz]", ylabel="peak response [g]", title=f"Shock response spectrum{quality}")
     name, rest = next(iter(finding.margin.rest.items()))
     scale, unit = (1e3, "mm") if name == OPEN else (100, "cN")
     at = np.array(curves["time"])
@@ -304,14 +307,14 @@ def record(finding: Finding) -> Figure:
 def wear(figure: Figure, findings: list[Finding]) -> None:
     """Draw the margins over the overtravel, or the gap of a contact that is open alone."""
     first = findings[0].margin
-    over, why = ("gap", "") if is_open(first) else ("overtravel", ", which wear takes away")
-    axes = beside(figure, [finding.named for finding in findings], f"Margins over the {over}{why}")
+    over, why = ("gap", "") if is_open(first) else ("overtravel", "; wear reduces it")
+    axes = beside(figure, [finding.named for finding in findings], f"Margins by linear response over the {over}{why}")
     for number, finding in enumerate(findings):
         own = finding.margin.wear
         style = styled(number, len(own["margin"])) | {"markevery": 1}
         axes.plot(1e3 * np.array(own["overtravel"]), own["margin"], label=finding.named, **style)
     axes.axhline(1.0, color=GREY, linewidth=1)
-    axes.axvline(1e3 * first.overtravel, color=GREY, linestyle=":", label="as it is")
+    axes.axvline(1e3 * first.overtravel, color=GREY, linestyle=":", label="present")
     axes.set(xlabel=f"{over} [mm]", ylabel="margin", ylim=(0, None))
     axes.legend(**BESIDE)
 

@@ -156,8 +156,8 @@ class Tested:
 
     @property
     def notes(self) -> list[str]:
-        """Return what has to be said of the test, by the first model."""
-        return [f"{self.first.named}: {note}" for note in self.first.notes]
+        """Return what has to be said of the test, by each model."""
+        return [*dict.fromkeys(f"{each.named}: {note}" for each in self.models for note in each.notes)]
 
     @property
     def judged(self) -> Margin | None:

@@ -9,7 +9,7 @@ from relay_contact.qualification.results import Chance, Finding, Margin, PartMar
 
 HEAD = (
     "test", "level", "verdict", "margin", "95 % interval of the parameters", "weakest at", "fails first", "in the test",
-    "left at least",
+    "least force or gap",
 )  # fmt: skip
 REASONS = ("test", "what limits", "what the interval comes from", "to measure or tighten", "chance of failing",
            "passes from")  # fmt: skip
@@ -22,7 +22,8 @@ UNREAD = "† Read in a quotation of the standard. * From memory: not, or not al
 TOLD = {MODEL: "allowance for the model", CHANCE: CHANCE}
 UNSTATED = "none stated"
 """In place of an interval and a chance, where the relay's file has nothing that they could come from."""
-LEAST_SHARE = 0.01  # of the variance, below which a parameter is not named
+COARSE = "the coarse steps of the record, besides the uncertainties"
+LEAST_SHARE = 0.1  # of the variance, below which knowing a parameter narrows the interval by less than 5 %
 
 
 def time_text(seconds: float) -> str:
@@ -128,7 +129,7 @@ def tighten(chance: Chance) -> str:
     """Return of which parameters the knowledge would narrow the interval most, in words."""
     found = sorted(((share, name) for name, share in chance.indices.items() if name not in TOLD), reverse=True)[:2]
     told = [f"{name}, {three(100 * share)} % of the variance" for share, name in found if share > LEAST_SHARE]
-    return "; ".join(told) or "no parameter"
+    return "; ".join(told) or f"no parameter has {100 * LEAST_SHARE:g} % of the variance"
 
 
 def ppm(share: float) -> str:
@@ -171,9 +172,10 @@ def reasons(tested: Tested) -> list[list[str]]:
     for each in tested.models:
         test = each.named + (f": {each.model}" if len(tested.models) > 1 else "")
         told = [""] * 4
-        if each.judged and each.judged.chance:
+        if each.judged:
             chance = each.judged.chance
-            told = [contributions(chance), tighten(chance), chance_text(chance), passes_text(each.judged)]
+            known = [contributions(chance), tighten(chance), chance_text(chance)] if chance else [COARSE, "", UNSTATED]
+            told = [*known, passes_text(each.judged)]
         found.append([test, limits(each), *told])
         if each.judged:
             others = {name: own.limits for name, own in each.judged.parts.items() if own.limits != each.limits}
