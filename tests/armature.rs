@@ -77,6 +77,40 @@ fn the_coil_says_which_of_two_positions_it_has() {
     assert!(weak.model().preload().armature.core_force == 0.0);
 }
 
+/// Without current it falls to its rest, and comes back under more than holds it. Over a communication step the mean current counts.
+#[test]
+fn the_coil_lets_go_and_draws_again() {
+    let scene = relay();
+    let mut simulation = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
+    let held = simulation.real(RealOutput::ContactForce);
+    let pushed = simulation.real(RealOutput::StepMinimumPusherForce);
+    assert_eq!(pushed, simulation.model().preload().pusher_force);
+    let ramp = Inputs {
+        coil_relative_current_rate: 2e3,
+        ..coil(0.5)
+    };
+    let gaps = [coil(0.6), ramp].map(|inputs| {
+        let mut other = simulation.clone();
+        other.step(&inputs, 0.0, 1e-4).unwrap();
+        other.real(RealOutput::ArmatureGap)
+    });
+    close(gaps[0], gaps[1], 1e-9);
+    simulation.step(&coil(0.0), 0.0, 5e-4).unwrap();
+    let velocity = simulation.real(RealOutput::ArmatureVelocity);
+    assert!(
+        velocity < 0.0 && simulation.rate(RealOutput::ArmatureGap) == Some(-velocity),
+        "{velocity}"
+    );
+    simulation.step(&coil(0.0), 5e-4, 0.1).unwrap();
+    let off = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
+    let place = RealOutput::ArmatureDisplacement;
+    close(simulation.real(place), off.real(place), 1e-6);
+    for (time, current) in [(0.1005, 2.0), (0.2005, 1.0)] {
+        simulation.step(&coil(current), time, 0.1).unwrap();
+    }
+    close(simulation.real(RealOutput::ContactForce), held, 1e-6);
+}
+
 /// A slow acceleration takes the armature from its core where its weight is what holds it: hold force less return spring.
 #[test]
 fn a_slow_acceleration_releases_it_at_its_holding_force_over_its_mass() {

@@ -11,6 +11,7 @@ use roxmltree::Document;
 use testing::near;
 use testing::scenes::{LAWS, accelerated, force_scale, propped_mass, shaken};
 
+use crate::equilibrium::{on_spring, parallel};
 use crate::friction::rubbing;
 use crate::second::changeover;
 
@@ -118,23 +119,25 @@ type Three = [Vec<(f64, f64)>; 3];
 
 /// A derivative lies between the slopes just before and just after it, at ends of the integrator's steps and inside them. Values are
 /// wrong by the tolerance, so slopes by that over the time between two. Looked at every `size` seconds over 2 ms, where the last of
-/// the points so far `counts`.
+/// the points so far `counts`, while the fixed contact moves at a speed (m/s).
 fn check_slopes(
     case: &str,
     mut scene: Scene,
     outputs: &[RealOutput],
-    size: f64,
+    (size, speed): (f64, f64),
     counts: impl Fn(RealOutput, &[Three]) -> bool,
 ) {
     scene.solver.tolerance = 1e-9;
-    let inputs = Inputs {
-        contact_current: 0.1,
+    let mut inputs = Inputs {
+        contact_current: -1.0,
+        support_displacement_rate: speed,
         ..Inputs::default()
     };
     let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
     let mut rows: Vec<Three> = Vec::new();
     while simulation.time() < 2e-3 {
         rows.push([size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+            inputs.support_displacement = speed * simulation.time();
             simulation.step(&inputs, simulation.time(), step).unwrap();
             let read = |output: &RealOutput| (simulation.real(*output), simulation.rate(*output).unwrap());
             outputs.iter().map(read).collect()
@@ -192,7 +195,13 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
                 output != RealOutput::ContactConductance || rows.last().unwrap().iter().all(|at| at[0].0 > 0.0)
             };
             let outputs = if amplitude > 98.0 { &outputs[..5] } else { &outputs };
-            check_slopes(&format!("{law:?}, {amplitude} m/s2"), scene, outputs, size, counts);
+            check_slopes(
+                &format!("{law:?}, {amplitude} m/s2"),
+                scene,
+                outputs,
+                (size, 0.0),
+                counts,
+            );
         }
     }
 }
@@ -216,7 +225,7 @@ fn derivatives_with_friction_are_slopes() {
             let recent = &rows[rows.len().saturating_sub(later)..];
             rows.len() > later && recent.iter().flatten().all(|at| slips(at) == slips(&recent[0][0]))
         };
-        check_slopes(&format!("{damping} s"), scene, &outputs, size, counts);
+        check_slopes(&format!("{damping} s"), scene, &outputs, (size, 0.0), counts);
     }
 }
 
@@ -237,7 +246,30 @@ fn derivatives_at_a_second_contact_are_slopes() {
     // In the second contact all the while.
     let closed = |_, rows: &[Three]| rows.last().unwrap().iter().all(|at| at[0].0 > 0.0);
     for size in [1e-6, 1e-5] {
-        check_slopes("second contact", scene.clone(), &outputs, size, closed);
+        check_slopes("second contact", scene.clone(), &outputs, (size, 0.0), closed);
+    }
+}
+
+#[test]
+fn derivatives_of_warm_contacts_on_springs_are_slopes() {
+    let outputs = [
+        RealOutput::TipDisplacement,
+        RealOutput::TipVelocity,
+        RealOutput::FixedDisplacement,
+        RealOutput::FixedVelocity,
+        RealOutput::ContactConductance,
+        RealOutput::ContactTemperature,
+    ];
+    let mut scene = shaken(200.0, 1000.0);
+    parallel(&mut scene);
+    on_spring(&mut scene);
+    scene.effects.heating = true;
+    scene.resistance.film = 5e-4;
+    scene.parallel.curvature_radius = 5e-3;
+    for sizes in [(1e-6, 0.0), (1e-5, 0.0), (1e-5, 1e-2)] {
+        // From rest the rates are at first as small as the tolerance makes them.
+        let moves = |_, rows: &[Three]| rows.len() as f64 * sizes.0 > 2e-4;
+        check_slopes("on springs", scene.clone(), &outputs, sizes, moves);
     }
 }
 

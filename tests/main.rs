@@ -15,6 +15,7 @@ mod consistency;
 mod contact_laws;
 mod derivatives;
 mod energy_balance;
+mod equilibrium;
 mod excitation;
 mod fixed_spring;
 mod fmi_api;

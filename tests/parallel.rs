@@ -6,15 +6,15 @@ use std::sync::Arc;
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Model, reduced_modulus};
-use relay_contact::scene::spring::{GivenMode, Segments, Shape};
+use relay_contact::scene::spring::{GivenMode, PointMass, Segments, Shape};
 use relay_contact::scene::{Contact, Scene};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind,
 };
-use testing::near;
 use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
 use testing::springs::{mode, of_modes, segment, spring_file};
+use testing::{close, near};
 
 /// The scene with a parallel contact, equal to the first.
 fn pair(mut scene: Scene) -> Scene {
@@ -206,6 +206,23 @@ fn each_conducts_by_its_own_stiffness() {
         let [greatest, present] =
             [RealOutput::StepMaximumResistance, RealOutput::ContactResistance].map(|o| last.real(o));
         assert!(greatest >= present * (1.0 - 1e-12), "{greatest} {present}");
+        // Both have the same voltage, which heats the first by `T^2 = T_0^2 + V^2 / (4 L)`; the second circuit stays open.
+        let mut heated = scene.clone();
+        (heated.effects.heating, heated.effects.second_contact) = (true, true);
+        let inputs = Inputs {
+            contact_current: -10.0,
+            ..Inputs::default()
+        };
+        let started = Simulation::new(&heated, &inputs, 0.0).unwrap();
+        let open = 1.0 / scene.resistance.open;
+        let conductance = started.real(RealOutput::ContactConductance) - open;
+        let warm = scene
+            .environment
+            .temperature
+            .hypot(10.0 / conductance / 2.0 / 2.45e-8_f64.sqrt());
+        close("K", started.real(RealOutput::ContactTemperature), warm, 1e-12);
+        close("V", started.real(RealOutput::ContactVoltage), -10.0 / conductance, 1e-9);
+        close("S", started.real(RealOutput::SecondConductance), open, 1e-15);
     }
 }
 
@@ -260,5 +277,38 @@ fn contacts_of_all_heights_find_their_preload() {
                 }
             }
         }
+    }
+}
+
+/// Against each other the tongues of a forked spring move as the cantilever that both are beyond the fork: here of a tapered
+/// spring with a mass and a contact before its end, its dimensions at the cut worked out by hand.
+#[test]
+fn tongues_are_the_cantilever_beyond_the_fork() {
+    let mut scene = pair(Scene::default());
+    scene.effects.axial_force = AxialForceKind::None;
+    scene.solver.modes = 12;
+    let spring = |length: f64, [width, thickness]: [f64; 2], before: f64, fork_position: Option<f64>| Segments {
+        segments: vec![segment(length, [width, 2e-3], [thickness, 8e-5])],
+        masses: vec![PointMass {
+            position: 11e-3 - before,
+            mass: 2e-5,
+            rotary_inertia: 0.0,
+        }],
+        contact_position: Some(15e-3 - before),
+        fork_position,
+        ..Segments::default()
+    };
+    let forked = spring(16e-3, [4e-3, 1.2e-4], 0.0, Some(4e-3));
+    // A quarter of the way from 4 to 2 mm and from 0.12 to 0.08 mm.
+    let beyond = spring(12e-3, [3.5e-3, 1.1e-4], 4e-3, None);
+    let [all, tongues] = [forked, beyond].map(|segments| {
+        scene.spring = spring_file("spring.toml", Shape::Segments(segments));
+        Model::new(&scene, 0.0).unwrap().modes().to_vec()
+    });
+    let against = all.iter().filter(|mode| mode.tip * mode.parallel < 0.0);
+    for (n, (found, expected)) in against.zip(&tongues).take(4).enumerate() {
+        close(n, found.omega_squared, expected.omega_squared, 1e-9);
+        near(n, found.tip.abs(), expected.tip.abs(), 1e-9 * expected.tip.abs());
+        assert_eq!(found.participation, 0.0);
     }
 }

@@ -24,7 +24,7 @@ use crate::beam::tongues::Tongues;
 use crate::contact::friction::tangential_share;
 use crate::math::simd::LANES;
 use crate::scene::Scene;
-use crate::variables::{AxialForceKind, PusherKind};
+use crate::variables::PusherKind;
 
 /// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
 /// share, is less than rounding of the compliance.
@@ -206,10 +206,7 @@ impl FixedSpring {
         (own.tip.mass, own.tip.rotary_inertia) = (0.0, 0.0);
         own.beam.mass_damping = scene.fixed.mass_damping;
         own.beam.stiffness_damping = scene.fixed.stiffness_damping;
-        own.beam.axial_force = 0.0;
-        own.effects.axial_force = AxialForceKind::None;
         own.effects.pusher = PusherKind::None;
-        own.effects.parallel_contact = false;
         let spring = Spring::new(&own);
         Some(Self { scene: own, spring })
     }
