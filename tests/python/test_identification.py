@@ -23,6 +23,7 @@ from relay_contact.identification import Identification
 from relay_contact.identification.measurement import Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.identification.relay_file import put
+from relay_contact.identification.report import silent
 from relay_contact.qualification import Relay
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -150,18 +151,18 @@ def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
         found(data, relay=relay)
 
 
-def asked(tmp_path: Path, measurements: list[Measurement]) -> Identification:
-    """Identify the relay of a record from near values."""
+def asked(tmp_path: Path, measurements: list[Measurement], *parameters: str) -> Identification:
+    """Identify the relay of a record from near values: all that they are of, unless parameters are named."""
     relay = tmp_path / "relay.toml"
     relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in measured.GUESSED.items()))
-    paths = []
+    paths: list[Path] = []
     for each in measurements:
-        paths.append(tmp_path / each.path)
+        paths.append(tmp_path / f"{len(paths)}-{each.path}")
         over = {"static force": "travel", "ring-down": "time"}[each.kind]
         head = f"# calibration = {each.calibration}\n{over},{each.quantity}\n"
         rows = (f"{x!r},{y!r}" for x, y in zip(each.over.tolist(), each.values.tolist(), strict=True))
         paths[-1].write_text(head + "\n".join(rows) + "\n")
-    return found(*paths, relay=relay, parameters=list(measured.RINGING))
+    return found(*paths, relay=relay, parameters=list(parameters or measured.RINGING))
 
 
 @pytest.mark.parametrize("calibration", [0.005, 0.1])
@@ -224,6 +225,31 @@ def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -
         assert laboratory.predict(ring, values) == pytest.approx(expected, rel=1e-5)
 
 
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
+    force, ring = measured.record(0.25, 1e4, 0.01, SEED)
+    stiffness, damping = "beam.youngsModulus", "beam.stiffnessDamping"
+    over = np.linspace(-1e-4, 2e-4, 60)
+    line = np.interp(over, force.over, measured.pressed())
+    drift = 0.01 * np.sin(np.linspace(0, np.pi, 60))
+    gauges = [replace(force, over=over, values=factor * line) for factor in (1.0, 1.05)]
+    # Beyond where the contact opens there is no force.
+    beyond = np.append(-4e-4, force.over), np.append(0.0, force.values)
+    for data, sought, told in (
+        ([replace(force, over=over, values=line + drift)], [stiffness], "neighbouring residuals are alike"),
+        (gauges, [stiffness], r"the instrument would have to show [+-]\S+ %, more than its 0.5 %"),
+        ([ring, replace(ring, over=1.01 * ring.over)], [stiffness, damping], "frequency or rate of decay do not agree"),
+        ([replace(force, calibration=0.0)], [stiffness], "its instrument is taken as exact"),
+        ([replace(force, over=beyond[0], values=beyond[1])], [stiffness], "rows in which the contact is open tell"),
+    ):
+        assert any(re.search(told, note) for note in asked(tmp_path, data, *sought).notes), told
+    assert asked(tmp_path, [force], "contact.overtravel", stiffness).notes == []
+    rows = [f"{f},400,{20 * value}" for f, value in zip(measured.FREQUENCY, CLEAN["response"], strict=True)]
+    (tmp_path / "strong.csv").write_text("\n".join(["frequency [Hz],acceleration [m/s2],force [N]", *rows]) + "\n")
+    (note,) = found(tmp_path / "strong.csv", parameters=[damping]).notes[1:]
+    assert "the contact opens, at " in note
+
+
 def test_a_ring_down_that_is_sampled_too_coarsely_is_refused(tmp_path: Path) -> None:
     # At 400 rows per second 223 Hz look like 177 Hz; at 225 like 2 Hz.
     for rate, message in ((400.0, r"rings at 177 Hz, by the relay's file at 2\d\d Hz, with 400 rows per second: too"),
@@ -270,6 +296,7 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     ]
     moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
+    assert f"beam.youngsModulus: of its interval, tip.mass {100 * moved:.2g} % comes" in " ".join(silent(result))
 
 
 def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:
