@@ -43,6 +43,7 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     # Between values 1 us apart.
     assert found.simulated.duration == pytest.approx(LENGTHS, abs=2e-6)
     assert found.measured.start == pytest.approx(STARTS, abs=2e-6)
+    assert found.measured.figures["median"] == pytest.approx(110e-6, rel=1e-9)
     assert len(found.table) == 6
     assert (tmp_path / "comparison.png").stat().st_size > 10_000
     assert len((tmp_path / "comparison.csv").read_text().splitlines()) == 7
@@ -82,6 +83,15 @@ def test_interruptions_between_the_values_of_a_run(tmp_path: Path) -> None:
         f"The {name} has a value every {step} µs: shorter steps tell interruptions better."
         for name, step in (("run", 500), ("measurement", 10000))
     ]
+
+
+def test_a_record_may_begin_and_end_interrupted(run: Path, tmp_path: Path) -> None:
+    """By straight lines of the logarithm: from 1e9 to 0.05 Ohm in 1 ms a threshold of 5 is crossed after 0.8058 ms."""
+    log = tmp_path / "log.csv"
+    log.write_text("time [ms],resistance [Ohm]\n0,1e9\n1,1e9\n2,0.05\n9,0.05\n10,1e9\n")
+    found = compare(run, log, threshold=5.0, shift=0.0).measured
+    assert found.start == pytest.approx([0, 9.1942e-3], abs=1e-7)
+    assert found.duration == pytest.approx([1.8058e-3, 0.8058e-3], abs=1e-7)
 
 
 def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Courses, spectra, noise and records as tests: against closed forms, a second solution, and the whole record."""
 
 import csv
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from qualified import CONTACTS, described, judged
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
 from relay_contact.command import main
-from relay_contact.qualification import Relay, Standard, qualify, synthesis
+from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
@@ -124,17 +125,24 @@ def test_a_record_alone_is_a_test(tmp_path: Path) -> None:
     relay.write_text("parameters.effects.axialForce = 'FromPreload'\n")
     time = np.linspace(0, 4e-3, 201)
     pulse = -30 * np.sin(np.pi * time / 4e-3)
+    time += 7
     (tmp_path / "two.csv").write_text(
         "time [ms];x [g];temperature [degC];y [m/s2]\n"
-        + "\n".join(f"{1e3 * t};{a};20;{9.80665 * a / 2}" for t, a in zip(time, pulse, strict=True))
+        + "\n".join(f"{1e3 * t:.9g};{a};20;{9.80665 * a / 2}" for t, a in zip(time, pulse, strict=True))
     )
     found = qualify(relay, history=[tmp_path / "two.csv"], out=tmp_path, component=COMPONENT)
     first, second = found["two.csv, x"], found["two.csv, y"]
     assert second.margin.margin == pytest.approx(2 * first.margin.margin, rel=2e-4)
     # What is drawn is the failure itself, at the level of the margin: just longer than allowed, without force.
     for each in (first, second):
-        assert 10e-6 <= each.margin.curves["failing"]["closed contact"] < 60e-6
-        assert min(each.margin.curves["course"]) <= 0
+        curves = each.margin.curves
+        assert 10e-6 <= curves["failing"]["closed contact"] < 60e-6
+        assert min(curves["course"]) <= 0
+        # At the times of the record: the pulse bends the spring most at its middle.
+        assert curves["whole"][0][0] == 7
+        failing = float(each.margin.weakest.split()[-2])
+        assert failing == pytest.approx(7.002, abs=1e-3)
+        assert curves["time"][int(np.argmin(curves["course"]))] == pytest.approx(failing, abs=2e-4)
     # Sketch, margins, wear, and a figure of each record.
     assert (tmp_path / "qualification.html").read_text(encoding="utf-8").count("<svg") == 5
 
@@ -200,6 +208,29 @@ def test_a_pulse_of_damped_sines_meets_its_spectrum(required: Any) -> None:  # n
         assert found == pytest.approx(absolute, rel=0.01)
     # No change of velocity is left, beside that of the pulse.
     assert abs(np.trapezoid(acceleration, time)) < 1e-2 * np.abs(acceleration).max() / (2 * np.pi * corners[0])
+
+
+def test_a_density_is_one_sided() -> None:
+    """Of white noise of 3 m/s2 rms up to half of the rate, 1 / STEP: twice its mean square times the step."""
+    noise_ = np.random.default_rng(1).normal(0.0, 3.0, 2**17)
+    found = judgement.density(noise_, np.array([5e3, 1e4, 2e4]), 2 ** (1 / 3))
+    assert found == pytest.approx([2 * 9.0 * STEP] * 3, rel=0.1)
+
+
+def test_the_figure_of_a_spectrum_shows_that_it_is_met(tmp_path: Path) -> None:
+    test = Spectrum("spectrum", "", READ, ((100.0, 20.0), (1000.0, 500.0)))
+    (tested,) = judged(described(PUBLISHED), tmp_path, test)
+    whole, power, _, srs = plots.record(tested.first).axes
+    reached, required, density = (np.array(line.get_ydata()) for line in (*srs.lines[:2], power.lines[0]))
+    assert (required[0], required[-1]) == pytest.approx((20.0, 500.0))
+    assert reached[-1] == pytest.approx(500.0, rel=0.09)
+    least, most = map(float, re.findall(r"-?[\d.]+", str(srs.lines[2].get_label())))
+    assert -0.3 < least < most < 0.71
+    # In g: its peak; and its rms in the range of the spectrum, in which most of it is, by the density.
+    acceleration = test.course().acceleration / G
+    assert whole.dataLim.y1 == pytest.approx(acceleration.max())
+    rms = np.trapezoid(density, np.array(power.lines[0].get_xdata())) ** 0.5
+    assert 0.7 < rms / np.sqrt(np.mean(acceleration**2)) < 1.05
 
 
 def test_densities_by_slopes() -> None:

@@ -18,8 +18,9 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
+from relay_contact.qualification.judgement import transient_level
 from relay_contact.qualification.page import inputs, write
-from relay_contact.qualification.parts import CLOSED
+from relay_contact.qualification.parts import CLOSED, CONTACT
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.trials import Specimen, pieces, steady
@@ -194,6 +195,28 @@ def coherent(finding: Finding) -> None:
         assert finding.verdict != "pass"
     else:
         assert (part.passes <= part.overtravel * (1 + 1e-12)) == (finding.verdict == "pass")
+
+
+def test_what_a_search_has_missed_is_found_at_the_level_of_the_test() -> None:
+    """Searches that end too high, or in the other direction: margins do not contradict what the test itself shows."""
+    tests = replace(SINE, acceleration=40.0), RANDOM, SHOCK
+    own = placed(described({}), *tests)
+    right = transient_level(own, SHOCK)[0]
+    own.pieces["shock"]["closing"] = [replace(own.pieces["shock"]["closing"][0], guess=0.5 * right.factor)]
+    shocked = transient_level(own, SHOCK)[0]
+    assert shocked.factor == pytest.approx(right.factor, rel=2e-4)
+    assert shocked.weakest == "opening direction"
+    own.weakest["sine"] = 1000.0, 1.2, [CLOSED]
+    shaken = judgement.vibration(own, tests[0], FEW)[0][CONTACT]
+    assert shaken.factor <= 1
+    assert "fails at the level of the test where linear theory does not expect it" in shaken.limits
+    part, decides, piece = own.middle["random"]
+    linear = own.linear(own.specimen.response, RANDOM)
+    failing = scaled(RANDOM, 1.02 * part * linear)
+    assert isinstance(failing, Random)
+    own = placed(described({}), failing)
+    own.middle["random"] = 1.1 * part, decides, piece
+    assert judgement.random_level(own, failing)[0].factor <= 1
 
 
 def test_passes_below_what_was_computed_is_told_so(tmp_path: Path) -> None:

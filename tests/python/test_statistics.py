@@ -12,7 +12,9 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import LIMITS, Correlation, Distribution
 from relay_contact.qualification.excitation import Shock
 from relay_contact.qualification.position import Position
+from relay_contact.qualification.results import Chance
 from relay_contact.qualification.statistics import MANY, Surface, chance, drawn, first_order
+from relay_contact.qualification.words import chance_text
 
 SLOW = Shock("slow", "", "from memory", 20.0, 0.1)
 
@@ -77,12 +79,20 @@ def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_intervals_of_a_chance() -> None:
     margins = np.full(MANY, 2.0)
+
+    def told() -> str:
+        return chance_text(Chance(*chance(margins, 0.0), {"tip.mass": 0.1}, {}, 0, 0.0))
+
     # The rule of three, two-sided: ln(40) / n.
     assert chance(margins, 0.0) == pytest.approx((0.0, 0.0, np.log(40) / MANY), rel=1e-3)
+    assert told() == "< 369 ppm"
     margins[:100] = 0.5
     assert chance(margins, 0.0) == pytest.approx((0.01, 0.00814, 0.01215), abs=1e-5)
+    assert told() == "10000 ppm (8140 ppm to 12100 ppm)"
     margins[:200] = 0.995
     assert chance(margins, 0.01)[1:] == pytest.approx((0.0, 0.0229), abs=1e-4)
+    margins[:] = 0.5
+    assert told() == "all but < 369 ppm"
 
 
 def test_a_surface_follows_margins_and_tells_its_error() -> None:
