@@ -32,7 +32,9 @@ def run(tmp_path: Path) -> Path:
 
 def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = tmp_path / "log.csv"
-    rows = "\n".join(f"{1e3 * (start + 5)};{1.1e6 * length}" for start, length in zip(STARTS, LENGTHS, strict=True))
+    # The last one is late.
+    starts = STARTS + np.array([0.0, 0.0, 2e-4])
+    rows = "\n".join(f"{1e3 * (start + 5)};{1.1e6 * length}" for start, length in zip(starts, LENGTHS, strict=True))
     log.write_text(f"start [ms];duration [us]\n{rows}\n")
     assert main(["compare", str(run), str(log), "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out.splitlines()
@@ -42,14 +44,14 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     found = compare(run, log)
     # Between values 1 us apart.
     assert found.simulated.duration == pytest.approx(LENGTHS, abs=2e-6)
-    assert found.measured.start == pytest.approx(STARTS, abs=2e-6)
+    assert found.measured.start == pytest.approx(starts, abs=2e-6)
     assert found.measured.figures["median"] == pytest.approx(110e-6, rel=1e-9)
     assert len(found.table) == 6
     assert (tmp_path / "comparison.png").stat().st_size > 10_000
     assert len((tmp_path / "comparison.csv").read_text().splitlines()) == 7
     # By a shift that is known.
     moved = compare(run, log, shift=-4.0)
-    assert moved.measured.start == pytest.approx(STARTS + 1, abs=1e-9)
+    assert moved.measured.start == pytest.approx(starts + 1, abs=1e-9)
     assert any("3 are outside the time of the run" in note for note in moved.notes)
     assert not any("outside" in note for note in found.notes)
 
@@ -102,4 +104,7 @@ def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) 
     other = tmp_path / "other.csv"
     other.write_text("time,contact.force\n0,1\n1,1\n")
     with pytest.raises(RelayContactError, match=r"no columns time and contact.resistance: run it with --output"):
+        compare(other, log)
+    other.write_text("time,contact.force\n0,x\n")
+    with pytest.raises(RelayContactError, match=r"other.csv: not a table as `relay-contact run` writes it"):
         compare(other, log)

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from matplotlib.figure import Figure
 
 from component import COMPONENT, ROOT
-from relay_contact import RelayContactError, Scene, run, scenes
+from relay_contact import RelayContactError, Scene, plot, run, scenes
 from relay_contact.command import main
 from relay_contact.files import read_toml
 from relay_contact.qualification import Relay, Standard, qualify, relays, standards
@@ -452,12 +453,47 @@ def test_arguments_of_the_command_that_do_not_fit_are_refused(
     assert message in capsys.readouterr().err
 
 
-def test_a_sweep_needs_two_frequencies_and_a_duration_above_zero(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.filterwarnings("ignore:loadtxt")
+@pytest.mark.parametrize(
+    ("text", "sweep", "message"),
+    [
+        ("", "0 100 0 1", "FIRST, LAST and DURATION have to be greater than 0"),
+        ("", "10 -1 0 1", "FIRST, LAST and DURATION have to be greater than 0"),
+        ("", "10 100 0 0", "FIRST, LAST and DURATION have to be greater than 0"),
+        ("time,contact.force\n0,1\n1,2\n", "10 100 5 1", "table.csv: no row from 5 to 6 s, in the time of the sweep"),
+        (
+            "time,contact.force\n0,1\n1,x\n",
+            "",
+            "table.csv: not a table as `relay-contact run` writes it: could not con",
+        ),
+        ("time,contact.force\n", "", "table.csv: not a table as"),
+        ("\udcff\n", "", "table.csv: not a table as"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused(
+    tmp_path: Path, text: str, sweep: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for sweep in ("0 100 0 1", "10 -1 0 1", "10 100 0 0"):
-        assert main(["plot", str(tmp_path / "none.csv"), "--sweep", *sweep.split()]) == 1
-        assert "FIRST, LAST and DURATION have to be greater than 0" in capsys.readouterr().err
+    (tmp_path / "table.csv").write_bytes(text.encode(errors="surrogateescape"))
+    assert main(["plot", str(tmp_path / "table.csv"), *(["--sweep", *sweep.split()] if sweep else [])]) == 1
+    assert message in capsys.readouterr().err
+
+
+def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    table = tmp_path / "table.csv"
+    table.write_text("time,contact.force\n0,1\n0.5,0.2\n0.7,0\n0.8,0\n0.9,0.3\n1,0.3\n")
+    for sweep in (None, (10.0, 1000.0, 0.5, 0.4)):
+        plot.draw(table, "title", sweep)
+    over_time, over_frequency = (figure.axes[0].lines[0].get_xydata() for figure in drawn)
+    assert over_time == pytest.approx(np.array([[0, 100], [0.5, 20], [0.7, 0], [0.8, 0], [0.9, 30], [1, 30]]))
+    # Logarithmic: in the middle of the duration the root of both.
+    assert over_frequency == pytest.approx(np.array([[10, 20], [100, 0], [10**2.5, 0], [1000, 30]]))
+    # Shaded where it is open.
+    (shade,) = drawn[0].axes[0].collections
+    assert np.unique(np.array(shade.get_paths()[0].vertices)[:, 0]) == pytest.approx([0.7, 0.8])
 
 
 def test_what_takes_long_shows_progress(
