@@ -180,6 +180,7 @@ def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.C
         low = found[name]["low"]
         assert bool(low) == (name != "calm")
         assert float(low or 0) < exact
+    assert [float(found[name]["low"]) == 0 for name in ("rate 6000", "rate 3000", "rate 1000")] == [False, True, True]
     assert "period" not in found["rate 48000"]["notes"]
     assert "> 1000 " in printed
     assert float(found["calm"]["margin"]) == 1000

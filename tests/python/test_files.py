@@ -394,6 +394,7 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"contact.force": 1.0}, "an output, which cannot be set"),
         ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded, Rough; did you mean Bonded"),
         ({"beam.length": "long"}, "allowed is a finite number"),
+        ({"beam.length": True}, "beam.length = True: not allowed, allowed is a finite number"),
         ({"solver.modes": 2.5}, "solver.modes = 2.5: not allowed, allowed is a whole number"),
         ({"effects.excitation": float("nan")}, "allowed is None, Sine"),
         ({"beam.file": 3.0}, "beam.file = 3.0: not allowed, allowed is a text"),

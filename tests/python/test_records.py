@@ -26,6 +26,8 @@ def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> Non
     assert first.acceleration == pytest.approx(G * VALUES, abs=1e-5)
     assert second.acceleration == pytest.approx(2 * VALUES, abs=1e-6)
     assert read(path, "Y")[0].channel == "y"
+    # The units of the file count.
+    assert np.array_equal(read(path, unit="g")[1].acceleration, second.acceleration)
     assert [note for note in first.notes if "12.5 s" in note]
     assert not [note for note in first.notes if "unequal" in note]
     with pytest.raises(RelayContactError, match=r"no channel z; there are x, temp, y"):
