@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from relay_contact import Array, RelayContactError
@@ -91,9 +92,11 @@ def test_a_record_may_begin_and_end_interrupted(run: Path, tmp_path: Path) -> No
     """By straight lines of the logarithm: from 1e9 to 0.05 Ohm in 1 ms a threshold of 5 is crossed after 0.8058 ms."""
     log = tmp_path / "log.csv"
     log.write_text("time [ms],resistance [Ohm]\n0,1e9\n1,1e9\n2,0.05\n9,0.05\n10,1e9\n")
-    found = compare(run, log, threshold=5.0, shift=0.0).measured
-    assert found.start == pytest.approx([0, 9.1942e-3], abs=1e-7)
-    assert found.duration == pytest.approx([1.8058e-3, 0.8058e-3], abs=1e-7)
+    options = ["--threshold", "5", "--shift", "0", "--out", str(tmp_path)]
+    assert main(["compare", str(run), str(log), *options]) == 0
+    table = pd.read_csv(tmp_path / "comparison.csv", index_col="by").loc["measured"]
+    assert table["start [s]"].tolist() == pytest.approx([0, 9.1942e-3], abs=1e-7)
+    assert table["duration [s]"].tolist() == pytest.approx([1.8058e-3, 0.8058e-3], abs=1e-7)
 
 
 def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) -> None:

@@ -264,7 +264,7 @@ def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch
         pages.append((tmp_path / "qualification.html").read_text(encoding="utf-8"))
     page, dated = pages
     assert page == dated.replace(" <small>1 April 2030</small>", "")
-    for text in ("12.345 mg", "± 3.77 %", "RelayContact 0.", "rigid relay", "contact.moving.poissonRatio"):
+    for text in ("12.345 mg", "25 °C", "± 3.77 %", "RelayContact 0.", "rigid relay", "contact.moving.poissonRatio"):
         assert text in page
     assert "friction.coefficient" not in page
 

@@ -27,6 +27,8 @@ EXPORTS = {
     "plain": "travel [um],force [cN]\n" + PLAIN,
     "capitals and parentheses": "Travel (um),FORCE (cN)\n" + PLAIN,
     "units in words": "travel in um,Force / cN\n" + PLAIN,
+    "grams-force": "travel [um],force [gf]\n"
+    + "".join(f"{travel},{float(force) / 0.980665!r}\n" for travel, force in (row.split(",") for row in PLAIN.split())),
     "micro sign": "travel [\N{MICRO SIGN}m],force [cN]\n" + PLAIN,
     "Greek mu": "travel [\N{GREEK SMALL LETTER MU}m],force [cN]\n" + PLAIN,
     "row of units": "Travel,Force\n\N{MICRO SIGN}m,cN\n" + PLAIN,
