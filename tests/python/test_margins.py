@@ -62,12 +62,11 @@ def varied(relay: Relay, count: int, seed: int) -> list[Values]:
     ]  # fmt: skip
 
 
-def fails(values: Values, test: Asked, level: float) -> bool:
+def fails(specimen: Specimen, test: Asked, level: float) -> bool:
     """Tell whether a relay fails a test at a factor of its level, by the component alone: no linear response leads it.
 
     A sine is tried over all frequencies of its range, 2 % apart.
     """
-    specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
     if isinstance(test, Shock):
         (piece,) = pieces(specimen, test.course(), 1.0)
         return any(piece.follow(specimen, sign * level)[0] for sign in (-1, 1))
@@ -105,7 +104,8 @@ def several(relay: Relay, test: Asked, count: int) -> None:
     assert (part.low, part.high) == (levels[0], levels[-1])
 
     def first(values: Values) -> int:
-        return bisect_left(levels, True, key=lambda level: fails(values, test, float(level)))
+        specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
+        return bisect_left(levels, True, key=lambda level: fails(specimen, test, float(level)))
 
     firsts = np.array([first(values) for values in varied(relay, count, 99)])
     for number, (level, share) in enumerate(zip(levels, shares, strict=True)):

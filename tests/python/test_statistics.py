@@ -1,5 +1,6 @@
 """Distributions, correlations, chances and indices: against closed forms; a relay file that identification wrote."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -34,6 +35,12 @@ def test_distributions_by_name(entries: Any, ends: tuple[float, float]) -> None:
     found = Distribution(**entries)
     assert found.factor(norm.ppf(LIMITS), 2.0) == pytest.approx(ends, abs=2e-4)
     assert found.half(2.0) == pytest.approx((ends[1] - ends[0]) / 2, abs=2e-4)
+    told = [float(each) / 100 for each in re.findall(r"[+-]?\d+\.?\d*", found.told(2.0))]
+    assert told == pytest.approx(
+        [ends[1] - 1] if "part" in entries and len(entries) == 1 else np.array(ends) - 1, abs=3e-4
+    )
+    # None changes its sign.
+    assert Distribution(part=0.9).factor(np.array(-9.0), 2.0) == 0.01
 
 
 def slow_shock(names: tuple[str, ...], coefficient: float = 0.0) -> tuple[Position, float]:
