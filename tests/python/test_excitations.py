@@ -81,6 +81,8 @@ def test_the_tolerance_of_a_pulse_moves_the_margin(tmp_path: Path) -> None:
     low, high = tested.margin.tolerance
     assert low == pytest.approx(tested.margin.margin / 1.2, rel=0.02)
     assert high == pytest.approx(tested.margin.margin / 0.8, rel=0.02)
+    corners = [(each.acceleration, each.duration) for each in test.corners]
+    assert corners == [pytest.approx((peak, length)) for peak in (40.0, 60.0) for length in (9.9e-3, 12.1e-3)]
 
 
 def test_a_recorded_pulse_is_that_of_the_generator(tmp_path: Path) -> None:
@@ -207,8 +209,16 @@ def test_a_pulse_of_damped_sines_meets_its_spectrum(required: Any) -> None:  # n
         own = solve_ivp(motion, (0, time[-1]), [0, 0], max_step=0.05 / frequency, rtol=1e-6)
         absolute = np.abs(omega * own.y[1] / 10 + omega**2 * own.y[0]).max()
         assert found == pytest.approx(absolute, rel=0.01)
+    # At its end there is nothing, for which the contact is watched until it is calm.
+    assert acceleration[-1] == 0
     # No change of velocity is left, beside that of the pulse.
     assert abs(np.trapezoid(acceleration, time)) < 1e-2 * np.abs(acceleration).max() / (2 * np.pi * corners[0])
+
+
+def test_the_response_to_a_blow_comes_after_it() -> None:
+    """Of an oscillator without damping: its angular frequency times the change of velocity, 100 m/s2 in 0.1 ms."""
+    found = synthesis.response(np.full(10, 100.0), 1e-5, np.array([100.0]), 1e6)
+    assert found == pytest.approx(2 * np.pi * 100 * 1e-2, rel=0.01)
 
 
 def test_a_density_is_one_sided() -> None:
@@ -353,16 +363,24 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     relay.write_text(f"{text}axes.lateral = [0.1]\n")
     with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral = .*one participation for each of the"):
         Relay.read(relay, COMPONENT)
+    still = tmp_path / "still.toml"
+    still.write_text(Path(str(spring)).read_text().replace(f"participation = {parts[1]}", "participation = 0.0"))
+    relay.write_text(f"{text.replace(str(spring), str(still))}axes.lateral = {parts}\n")
+    with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral.2 = .*mode 2 has none in the spring file"):
+        Relay.read(relay, COMPONENT)
 
 
 def test_a_number_that_no_verdict_depends_on_is_no_evidence() -> None:
     sine = Standard.read("MIL-PRF-28776").tests[0]
     # The time of the sweep is from memory, but no verdict depends on it.
     assert sine.weakest_evidence == "read in the standard"
+    # The density of the noise is from memory, too.
+    assert Standard.read("MIL-PRF-28776").tests[1].weakest_evidence == "from memory"
 
 
 def test_a_course_begins_gently_where_it_does_not_begin_at_rest() -> None:
     course = Course(np.array([0.0, 1.0]), np.array([2.0, 2.0]))
     padded = course.padded(0.1)
-    assert padded.acceleration[0] == 0
+    assert padded.acceleration[:3].tolist() == [0, 2, 2]
+    assert padded.time[:3] == pytest.approx([0, 0.2, 0.3])
     assert padded.end == pytest.approx(1.3)

@@ -117,7 +117,7 @@ def several(relay: Relay, test: Asked, count: int) -> None:
 
 def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path: Path) -> None:
     """Sine to 96 % of the resonance: the margin falls steeply where the resonance comes nearer."""
-    values: Values = {"beam.stiffnessDamping": 5e-6, "contact.damping": 2e-6}
+    values: Values = {"beam.stiffnessDamping": 1e-5, "contact.damping": 4e-6}
     natural = respond(COMPONENT, values, CONTACTS.threshold).natural
     relay = described(values, {"beam.thickness": Distribution(part=0.04)})
     test = replace(SINE, frequencies=(10.0, 0.96 * natural), acceleration=3.0)
