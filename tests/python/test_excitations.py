@@ -235,8 +235,10 @@ def test_the_figure_of_a_spectrum_shows_that_it_is_met(tmp_path: Path) -> None:
     reached, required, density = (np.array(line.get_ydata()) for line in (*srs.lines[:2], power.lines[0]))
     assert (required[0], required[-1]) == pytest.approx((20.0, 500.0))
     assert reached[-1] == pytest.approx(500.0, rel=0.09)
-    least, most = map(float, re.findall(r"-?[\d.]+", str(srs.lines[2].get_label())))
-    assert -0.3 < least < most < 0.71
+    decibels = 20 * np.log10(reached / required)
+    told = [float(each) for each in re.findall(r"-?[\d.]+", str(srs.lines[2].get_label()))]
+    assert told == pytest.approx([decibels.min(), decibels.max()], abs=0.01)
+    assert -0.3 < told[0] < told[1] < 0.71
     # In g: its peak; and its rms in the range of the spectrum, in which most of it is, by the density.
     acceleration = test.course().acceleration / G
     assert whole.dataLim.y1 == pytest.approx(acceleration.max())

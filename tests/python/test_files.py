@@ -461,28 +461,16 @@ def test_arguments_of_the_command_that_do_not_fit_are_refused(
 
 
 @pytest.mark.filterwarnings("ignore:loadtxt")
-@pytest.mark.parametrize(
-    ("text", "sweep", "message"),
-    [
-        ("", "0 100 0 1", "FIRST, LAST and DURATION have to be greater than 0"),
-        ("", "10 -1 0 1", "FIRST, LAST and DURATION have to be greater than 0"),
-        ("", "10 100 0 0", "FIRST, LAST and DURATION have to be greater than 0"),
-        ("time,contact.force\n0,1\n1,2\n", "10 100 5 1", "table.csv: no row from 5 to 6 s, in the time of the sweep"),
-        (
-            "time,contact.force\n0,1\n1,x\n",
-            "",
-            "table.csv: not a table as `relay-contact run` writes it: could not con",
-        ),
-        ("time,contact.force\n", "", "table.csv: not a table as"),
-        ("\udcff\n", "", "table.csv: not a table as"),
-    ],
-)
-def test_what_cannot_be_drawn_is_refused(
-    tmp_path: Path, text: str, sweep: str, message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "table.csv").write_bytes(text.encode(errors="surrogateescape"))
-    assert main(["plot", str(tmp_path / "table.csv"), *(["--sweep", *sweep.split()] if sweep else [])]) == 1
-    assert message in capsys.readouterr().err
+def test_what_cannot_be_drawn_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table, head = tmp_path / "table.csv", "time,contact.force\n"
+    for text, sweep, message in (
+        *((head, each, "DURATION have to be greater than 0") for each in ("0 100 0 1", "10 -1 0 1", "10 100 0 0")),
+        (f"{head}0,1\n1,2\n", "10 100 5 1", "table.csv: no row from 5 to 6 s, in the time of the sweep"),
+        *((each, "", "table.csv: not a table as `relay-contact run`") for each in (head, f"{head}0,x\n", "\udcff\n")),
+    ):
+        table.write_bytes(text.encode(errors="surrogateescape"))
+        assert main(["plot", str(table), *(["--sweep", *sweep.split()] if sweep else [])]) == 1
+        assert message in capsys.readouterr().err
 
 
 def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
