@@ -15,11 +15,13 @@ from qualified import CONTACTS, described, judged
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
 from relay_contact.command import main
+from relay_contact.figures import three
 from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
 from relay_contact.qualification.trials import Piece, Specimen, eased, noise, pieces
+from relay_contact.qualification.words import limits
 
 G = 9.80665
 READ: Any = "from memory"
@@ -79,6 +81,7 @@ def test_the_tolerance_of_a_pulse_moves_the_margin(tmp_path: Path) -> None:
     (tested,) = judged(described(PUBLISHED), tmp_path, test)
     assert tested.margin.tolerance
     low, high = tested.margin.tolerance
+    assert limits(tested.first).endswith(f"; {three(low)} to {three(high)} by the pulses within the tolerance")
     assert low == pytest.approx(tested.margin.margin / 1.2, rel=0.02)
     assert high == pytest.approx(tested.margin.margin / 0.8, rel=0.02)
     corners = [(each.acceleration, each.duration) for each in test.corners]
@@ -116,8 +119,13 @@ def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
     test = history(path)
     assert [each for each in test.record.notes if "unequal" in each]
     assert [each for each in test.record.notes if "before its begin" in each]
-    found = [piece.threshold(CALM, 1.0)[0] for piece in pieces(CALM, test.course(), 1.0)]
-    whole = Piece(test.course().padded(CALM.response.settling()), 1.0, 0.0)
+    around, course = pieces(CALM, test.course(), 1.0), test.course()
+    for piece in around:
+        # At its place in the record.
+        last = np.interp(piece.begin + piece.course.end, course.time, course.acceleration)
+        assert piece.course.acceleration[-1] == pytest.approx(last)
+    found = [piece.threshold(CALM, 1.0)[0] for piece in around]
+    whole = Piece(course.padded(CALM.response.settling()), 1.0, 0.0)
     assert not whole.follow(CALM, 0.9985 * min(found))[0]
     assert whole.follow(CALM, 1.0015 * min(found))[0]
 
@@ -284,6 +292,9 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
         largest = response.reserve / response.random(own, 0.0, float(-np.expm1(-1.0)))
         # Peaks come in clusters of some: an uncertainty of the number by a fifth is one of the level by 2 %.
         assert largest == pytest.approx(peaks[-crossed], rel=0.03)
+    # The largest of them is the first of those that are simulated.
+    deepest, *_ = pieces(replace(CALM, response=response), noise(test)[0], 1.0)
+    assert deepest.guess == pytest.approx(response.reserve / peaks[-1], rel=0.01)
     # Without sines, Rice's own formula.
     bare = replace(test, sines=())
     rms_, mean = response.moments(bare)

@@ -191,6 +191,7 @@ def coherent(finding: Finding) -> None:
             assert chance.failing >= 0.975
         case _:
             assert part.low <= 1 <= part.high
+    assert passes_text(part).startswith("<") == (part.passes == min(part.wear["overtravel"]))
     if part.passes is None:
         assert finding.verdict != "pass"
     else:

@@ -37,6 +37,7 @@ from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.page import write
 from relay_contact.qualification.response import respond
+from relay_contact.qualification.trials import Specimen, steady
 
 G = 9.80665
 PUBLISHED: Values = {"effects.axialForce": "FromPreload"}
@@ -154,6 +155,12 @@ def test_a_rough_contact_opens_where_the_second_solution_does(paper: Assessment)
     # 1 % either way: an interruption of 10 us begins 0.1 % above the first opening, and the file rounds the frequency.
     assert least(0.99) > 1e-3 * ROUGH.force
     assert least(1.01) < 1e-6 * ROUGH.force
+    # At frequencies beside it, the component stays closed at this level.
+    values: Values = {**PUBLISHED, **MODELS["rough contact"]}
+    limits = MILITARY.contacts
+    specimen = Specimen(COMPONENT, values, limits, respond(COMPONENT, values, limits.threshold))
+    for beside in (0.95, 0.975, 1.025, 1.05):
+        assert not steady(specimen, beside * frequency, 0.99 * 30 * G * part.margin, True)[0]
 
 
 def test_friction_hardly_changes_what_opens_a_contact_slowly(paper: Assessment) -> None:

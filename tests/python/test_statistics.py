@@ -12,7 +12,9 @@ from qualified import described, placed
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import LIMITS, Correlation, Distribution
 from relay_contact.qualification.excitation import Shock
+from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.position import Position
+from relay_contact.qualification.relay import Model
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.statistics import MANY, Surface, chance, drawn, first_order
 from relay_contact.qualification.words import chance_text
@@ -67,6 +69,29 @@ def test_a_correlation_changes_the_interval_as_it_should(monkeypatch: pytest.Mon
         assert told.confirmed >= 2
         # The component was where the polynomial had told.
         assert told.error < 2e-3
+
+
+def test_what_the_component_finds_beside_linear_theory_is_where_it_found_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if its levels went with the scores of three parameters, the last of which hardly matters; 1 % off in draws."""
+    slopes = 0.02 * np.array([1.0, 2.0, 3.0])
+
+    def turn(own: Position, test: Asked, number: int, expected: float) -> float:
+        return expected + float(own.surfaces[test.name].scores[number] @ slopes if number < 7 else 0.01)
+
+    position, margin = slow_shock(("contact.overtravel", "beam.youngsModulus", "contact.curvatureRadius"))
+    test = replace(SLOW, acceleration=1.1 * margin * SLOW.acceleration)
+    position = replace(position, tests=(test,))
+    monkeypatch.setattr(Position, "turn", turn)
+    # By linear theory it fails at 1/1.1 of the level, in the component at the level: draws next to that are confirmed.
+    linear, found = (position.margins(test, 1.0, confirmed) for confirmed in (False, True))
+    scores = position.independent[:, :3]
+    inside = (np.abs(scores) < 1.95).all(axis=1)
+    assert np.log(found.margins / linear.margins)[inside] == pytest.approx((scores @ slopes)[inside], abs=1e-9)
+    assert found.confirmed == 3 * 2 + 2
+    assert found.error == pytest.approx(-np.expm1(-0.01))
+    # What the model leaves out is a part of the margin, with 95 % confidence.
+    allowed = replace(position, model=Model("one", {}, 0.1)).margins(test, 1.0, False).margins / linear.margins
+    assert np.quantile(allowed, LIMITS) == pytest.approx((0.9, 1.1), abs=4e-3)
 
 
 def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> None:
