@@ -3,6 +3,7 @@
 import csv
 import re
 from dataclasses import replace
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from relay_contact.qualification import Relay, Standard, judgement, plots, quali
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
-from relay_contact.qualification.trials import Piece, Specimen, eased, noise, pieces
+from relay_contact.qualification.trials import Piece, Specimen, eased, middle_dip, noise, pieces
 from relay_contact.qualification.words import limits
 
 G = 9.80665
@@ -303,6 +304,19 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     )
     tiny = replace(test, sines=((200.0, 1e-6),))
     assert response.random(tiny, 0.0) == pytest.approx(response.random(bare, 0.0), rel=1e-4)
+
+
+@pytest.mark.parametrize("parts", permutations((0.9, 1.0, 1.1)))
+def test_of_three_dips_the_middle_one_counts(parts: tuple[float, ...]) -> None:
+    class Dip(Piece):
+        """Fails from its part of the level on."""
+
+        def tried(self, *_: object) -> Any:  # noqa: ANN401
+            return lambda level: ({"contact": 1e-5} if level >= self.longer else {}, 0.0)
+
+    still = Course(np.zeros(2), np.zeros(2))
+    dips: list[Piece] = [Dip(still, 1.0, begin, part) for begin, part in enumerate(parts)]
+    assert middle_dip(CALM, dips)[0] == pytest.approx(1.0, rel=1e-4)
 
 
 def test_clipping_bounds_what_follows_the_acceleration_and_hardly_what_resonates() -> None:

@@ -297,6 +297,9 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
     assert f"beam.youngsModulus: of its interval, tip.mass {100 * moved:.2g} % comes" in " ".join(silent(result))
+    # And the other way around: what is known from elsewhere is not sought.
+    relay.write_text(relay.read_text().replace("tip.mass", names[0]).replace(str(measured.TRUTH["tip.mass"]), "1.2e11"))
+    assert list(found(ring, relay=relay, parameters=names).missing) == [names[0]]
 
 
 def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:

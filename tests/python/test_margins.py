@@ -102,6 +102,9 @@ def several(relay: Relay, test: Asked, count: int) -> None:
     shares = (0.025, 0.16, 0.5, 0.84, 0.975)
     levels = np.quantile(position.margins(test, part.margin).margins, shares, method="hazen")
     assert (part.low, part.high) == (levels[0], levels[-1])
+    # As many draws as it takes.
+    surface = position.surfaces[test.name]
+    assert surface.error < 0.03 * np.std(surface.values)
 
     def first(values: Values) -> int:
         specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
@@ -235,6 +238,9 @@ def test_a_failure_without_an_end_is_a_failure() -> None:
     lengths, _ = steady(specimen, 3000.0, 3000.0, False)
     # More than a period: the longest, not the mean.
     assert lengths[CLOSED] > 1 / 3000.0
+    # None that ends as the start is forgotten: at 2 kHz a sudden vibration opens from 52 g on, a steady one from 65 g.
+    calm = replace(specimen, values={}, response=respond(COMPONENT, {}, CONTACTS.threshold))
+    assert steady(calm, 2000.0, 58 * 9.80665, False)[0] == {}
 
 
 def test_each_model_is_judged_and_all_have_to_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,6 +15,7 @@ from relay_contact.qualification.judgement import searched, transient
 from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, all_parts
 from relay_contact.qualification.position import Position
+from relay_contact.qualification.words import part_rows, reasons
 
 G = 9.80665
 ARMATURE: dict[str, float] = {
@@ -199,13 +200,20 @@ def test_the_verdict_is_that_of_the_part_that_fails_first(assessed: Assessment) 
         if own.margin < 1:
             assert CORE in own.failed
             assert own.least[CORE] == 0
+        assert np.interp(own.overtravel, own.wear["overtravel"], own.wear["margin"]) == pytest.approx(own.margin)
         assert own.chance
         effects = own.chance.effects
         assert max(effects, key=lambda name: effects[name]) in (
             "armature.holdForce", "chance of the largest dip",
         )  # fmt: skip
-    # The hold force, less what it has to carry, is what the level follows: the interval in closed form.
     slow = assessed["sine"].margin
+    # Of the overtravel, that of the pusher included, half leaves half of the force.
+    forces = []
+    for less in (0.0, slow.overtravel / 2):
+        with COMPONENT.started({**WEAK, "contact.overtravel": -5e-5 - less}) as contact:
+            forces.append(contact.get("contact.force"))
+    assert forces[1] == pytest.approx(forces[0] / 2, rel=0.02)
+    # The hold force, less what it has to carry, is what the level follows: the interval in closed form.
     with COMPONENT.started(WEAK) as contact:
         held = contact.get("step.minimumStopForce")
     assert slow.high / slow.margin - 1 == pytest.approx(np.hypot(0.1 * 3.0 / held, 0.05), rel=0.08)
@@ -218,6 +226,11 @@ def test_page_and_tables_name_the_parts(assessed: Assessment) -> None:
     for text in texts:
         assert text in page, text
     assert "as in a rigid relay" not in page
+    for tested in assessed:
+        (told,) = [row[7] for row in part_rows(tested.first) if row[0] == f"· {CORE}"]
+        assert (told == "holds") == (CORE not in tested.margin.failed)
+        # Parts have limits of their own.
+        assert {f"· {CONTACT}", f"· {PUSHER}"} <= {row[0] for row in reasons(tested)}
     table = assessed.table
     assert (table[f"{CORE} margin"] < table["margin"] * (1 + 4e-4)).all()
     assert (table["fails first"] == CORE).all()
