@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomlkit
-from scipy.stats import binom
+from scipy.stats import binom, t
 
 import measured
 from component import COMPONENT, ROOT
@@ -225,6 +225,16 @@ def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -
         assert laboratory.predict(ring, values) == pytest.approx(expected, rel=1e-5)
 
 
+def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
+    laboratory, level = Laboratory(COMPONENT), CLEAN["chatter"]
+    data = Measurement(Path("level.csv"), "chatter level", measured.LEVELS, "level", "m/s2", level)
+    assert laboratory.predict(data, {**measured.TRUTH}) == pytest.approx(level, rel=1e-4)
+    # The stiffness of a rough contact falls with the force: near its resonance it opens a fifth above the linear one.
+    rough = next(model for model in Relay.read("paper", COMPONENT).models if model.name == "rough contact")
+    factors = laboratory.correction(replace(data, over=np.array([1000.0, 1200.0])), rough.parameters)
+    assert 1.1 < factors.max() < 1.3
+
+
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
 def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     force, ring = measured.record(0.25, 1e4, 0.01, SEED)
@@ -296,6 +306,7 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     ]
     moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
+    assert result["beam.youngsModulus"].half > result["beam.youngsModulus"].by_others["tip.mass"]
     assert f"beam.youngsModulus: of its interval, tip.mass {100 * moved:.2g} % comes" in " ".join(silent(result))
     # And the other way around: what is known from elsewhere is not sought.
     relay.write_text(relay.read_text().replace("tip.mass", names[0]).replace(str(measured.TRUTH["tip.mass"]), "1.2e11"))
@@ -328,7 +339,13 @@ def test_an_instrument_that_may_be_wrong_widens_the_intervals(tmp_path: Path) ->
     names = ["beam.youngsModulus"]
     relay = tmp_path / "relay.toml"
     relay.write_text(f"parameters.contact.overtravel = {measured.TRUTH['contact.overtravel']}\n")
-    assert not holds(found(path, relay=relay, parameters=names), names[0], measured.TRUTH[names[0]])
+    result = found(path, relay=relay, parameters=names)
+    assert not holds(result, names[0], measured.TRUTH[names[0]])
+    # The regression of a force in proportion to the stiffness, to the digits of the file.
+    force, line = 1.015 * values["force"], CLEAN["force"]
+    left = force - line * (force @ line) / (line @ line)
+    half = t.ppf(0.975, len(line) - 1) * np.sqrt(left @ left / (len(line) - 1) * (line @ line)) / (force @ line)
+    assert result[names[0]].half == pytest.approx(half, rel=2e-3)
     path.write_text("# calibration = 0.02\n" + path.read_text())
     result = found(path, relay=relay, parameters=names)
     assert holds(result, names[0], measured.TRUTH[names[0]])

@@ -290,6 +290,8 @@ def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
         for part in paper
         for each in part.models
     }
+    for names in (("low", "margin", "high"), ("chance low", "chance", "chance high")):
+        assert all(np.diff([float(row[name]) for name in names]).min() >= 0 for row in rows)
     assert [row["test"] for row in (one, other)] == ["shock, 213 B", "shock, 213 C"]
     assert one["verdict"] == other["verdict"] == "not run"
 

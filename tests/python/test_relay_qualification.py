@@ -8,6 +8,7 @@ from qualified import CONTACTS, described, judged, placed
 from relay_contact import Values
 from relay_contact.component import half_sine, sine
 from relay_contact.qualification import Assessment, Standard
+from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
@@ -182,7 +183,9 @@ TESTS = (
 def assessed(tmp_path_factory: pytest.TempPathFactory) -> Assessment:
     """Judge the weakly held relay."""
     relay, out = described({**WEAK, "coil.relativeCurrent": 1.0}, UNSURE), tmp_path_factory.mktemp("judged")
-    found = Assessment(relay, Standard("own", CONTACTS, TESTS), judged(relay, out, *TESTS), out)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(positions, "DRAWS", 32)
+        found = Assessment(relay, Standard("own", CONTACTS, TESTS), judged(relay, out, *TESTS), out)
     write(found, COMPONENT)
     return found
 
