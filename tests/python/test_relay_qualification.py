@@ -1,5 +1,7 @@
 """`qualify` of a relay with pusher and armature: which part fails first, by closed forms, statics and brute force."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,15 +9,16 @@ from component import COMPONENT
 from qualified import CONTACTS, described, judged, placed
 from relay_contact import Values
 from relay_contact.component import half_sine, sine
-from relay_contact.qualification import Assessment, Standard
+from relay_contact.qualification import FEW, Assessment, Standard, judgement
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.judgement import searched, transient
 from relay_contact.qualification.page import write
-from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, all_parts
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, Rest, all_parts
 from relay_contact.qualification.position import Position
+from relay_contact.qualification.relay import Model
 from relay_contact.qualification.words import part_rows, reasons
 
 G = 9.80665
@@ -247,6 +250,18 @@ def test_a_draw_that_does_not_hold_the_armature_fails() -> None:
     margins = {each.part: each.linear(released[each.part], SLOW) for each in own.parts}
     assert margins[CORE] == 0
     assert margins[CONTACT] == 0
+
+
+def test_what_fails_at_rest_is_said() -> None:
+    loose = position(WEAK, LONG)
+    loose.rest = Rest(is_open=False)
+    worn = replace(placed(described({}), LONG), model=Model("worn", {"contact.overtravel": 1e-9}, 0.0))
+    for own, told in (
+        (loose, "the armature rests at neither of its stops"),
+        (worn, "interrupted at rest: more than 600 Ω of contact resistance"),
+    ):
+        found = judgement.judged(own, LONG, FEW)
+        assert (found.verdict, found.limits) == ("FAIL", told)
 
 
 def test_a_part_that_is_not_shaken_is_said_to_hold() -> None:
