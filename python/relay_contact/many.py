@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextvars import ContextVar
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -58,21 +58,9 @@ def side_by_side(
             KEPT.set(warnings)
         return work(item)
 
-    jobs = [partial(contextvars.copy_context().run, own, *each) for each in zip(items, kept, strict=True)]
-    found: list[Found] = [] if used == 1 else on_threads(jobs, used, tell)
-    for job in jobs if used == 1 else ():
-        found.append(job())
-        tell()
-    if (whole := KEPT.get()) is not None:
-        for kind, message in (pair for each in kept for pair in each.items()):
-            whole.setdefault(kind, message)
-    return found
-
-
-def on_threads(jobs: Sequence[Callable[[], Found]], count: int, tell: Callable[[], object]) -> list[Found]:
-    """Return what jobs give, done by so many threads."""
-    with ThreadPoolExecutor(count) as pool:
-        futures = [pool.submit(job) for job in jobs]
+    with ThreadPoolExecutor(used) as pool:
+        pairs = zip(items, kept, strict=True)
+        futures = [pool.submit(contextvars.copy_context().run, own, item, warnings) for item, warnings in pairs]
         try:
             for future in as_completed(futures):
                 future.result()
@@ -80,6 +68,9 @@ def on_threads(jobs: Sequence[Callable[[], Found]], count: int, tell: Callable[[
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+    if (whole := KEPT.get()) is not None:
+        for kind, message in (pair for each in kept for pair in each.items()):
+            whole.setdefault(kind, message)
     return [future.result() for future in futures]
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from relay_contact.component import Array, Unit, Value, units
 from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
-from relay_contact.files import description_path
+from relay_contact.files import RelayContactError, description_path
 from relay_contact.scene import read_table
 
 COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
@@ -108,6 +108,10 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
         first, last, start, duration = sweep
         scale, label = 1.0, "frequency of the sweep [Hz]"
         inside = (time >= start) & (time <= start + duration)
+        if not inside.any():
+            raise RelayContactError(
+                f"{table}: no row from {start:g} to {start + duration:g} s, in the time of the sweep"
+            )
         columns = {name: values[inside] for name, values in columns.items()}
         time = first * (last / first) ** ((time[inside] - start) / duration)
     closed = {words: columns[name] > 0 for words, name in FORCES.items() if name in columns}

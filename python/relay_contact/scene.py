@@ -36,9 +36,12 @@ INPUTS: Units = {
 
 def read_table(path: Path) -> dict[str, Array]:
     """Read a CSV file that `write_table` has written, its columns by name."""
-    with path.open(encoding="utf-8") as file:
-        names = file.readline().strip().split(",")
-        return dict(zip(names, np.loadtxt(file, delimiter=",", ndmin=2).T, strict=True))
+    try:
+        with path.open(encoding="utf-8") as file:
+            names = file.readline().strip().split(",")
+            return dict(zip(names, np.loadtxt(file, delimiter=",", ndmin=2).T, strict=True))
+    except ValueError as error:
+        raise RelayContactError(f"{path}: not a table as `relay-contact run` writes it: {error}") from error
 
 
 def input_table(path: Path) -> dict[str, Array]:

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from relay_contact import Array, RelayContactError
@@ -32,7 +33,9 @@ def run(tmp_path: Path) -> Path:
 
 def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = tmp_path / "log.csv"
-    rows = "\n".join(f"{1e3 * (start + 5)};{1.1e6 * length}" for start, length in zip(STARTS, LENGTHS, strict=True))
+    # The last one is late.
+    starts = STARTS + np.array([0.0, 0.0, 2e-4])
+    rows = "\n".join(f"{1e3 * (start + 5)};{1.1e6 * length}" for start, length in zip(starts, LENGTHS, strict=True))
     log.write_text(f"start [ms];duration [us]\n{rows}\n")
     assert main(["compare", str(run), str(log), "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out.splitlines()
@@ -42,13 +45,14 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     found = compare(run, log)
     # Between values 1 us apart.
     assert found.simulated.duration == pytest.approx(LENGTHS, abs=2e-6)
-    assert found.measured.start == pytest.approx(STARTS, abs=2e-6)
+    assert found.measured.start == pytest.approx(starts, abs=2e-6)
+    assert found.measured.figures["median"] == pytest.approx(110e-6, rel=1e-9)
     assert len(found.table) == 6
     assert (tmp_path / "comparison.png").stat().st_size > 10_000
     assert len((tmp_path / "comparison.csv").read_text().splitlines()) == 7
     # By a shift that is known.
     moved = compare(run, log, shift=-4.0)
-    assert moved.measured.start == pytest.approx(STARTS + 1, abs=1e-9)
+    assert moved.measured.start == pytest.approx(starts + 1, abs=1e-9)
     assert any("3 are outside the time of the run" in note for note in moved.notes)
     assert not any("outside" in note for note in found.notes)
     # A log of less time than the run.
@@ -89,6 +93,17 @@ def test_interruptions_between_the_values_of_a_run(tmp_path: Path) -> None:
     ]
 
 
+def test_a_record_may_begin_and_end_interrupted(run: Path, tmp_path: Path) -> None:
+    """By straight lines of the logarithm: from 1e9 to 0.05 Ohm in 1 ms a threshold of 5 is crossed after 0.8058 ms."""
+    log = tmp_path / "log.csv"
+    log.write_text("time [ms],resistance [Ohm]\n0,1e9\n1,1e9\n2,0.05\n9,0.05\n10,1e9\n")
+    options = ["--threshold", "5", "--shift", "0", "--out", str(tmp_path)]
+    assert main(["compare", str(run), str(log), *options]) == 0
+    table = pd.read_csv(tmp_path / "comparison.csv", index_col="by").loc["measured"]
+    assert table["start [s]"].tolist() == pytest.approx([0, 9.1942e-3], abs=1e-7)
+    assert table["duration [s]"].tolist() == pytest.approx([1.8058e-3, 0.8058e-3], abs=1e-7)
+
+
 def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) -> None:
     log = tmp_path / "log.csv"
     log.write_text("start [ms],length [us]\n1,2\n")
@@ -97,4 +112,7 @@ def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) 
     other = tmp_path / "other.csv"
     other.write_text("time,contact.force\n0,1\n1,1\n")
     with pytest.raises(RelayContactError, match=r"no columns time and contact.resistance: run it with --output"):
+        compare(other, log)
+    other.write_text("time,contact.force\n0,x\n")
+    with pytest.raises(RelayContactError, match=r"other.csv: not a table as `relay-contact run` writes it"):
         compare(other, log)

@@ -1,7 +1,9 @@
 """Courses, spectra, noise and records as tests: against closed forms, a second solution, and the whole record."""
 
 import csv
+import re
 from dataclasses import replace
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +16,14 @@ from qualified import CONTACTS, described, judged
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
 from relay_contact.command import main
-from relay_contact.qualification import Relay, Standard, qualify, synthesis
+from relay_contact.figures import three
+from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.page import UNKNOWN
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
-from relay_contact.qualification.trials import Piece, Specimen, eased, noise, pieces
-from relay_contact.qualification.words import COARSE
+from relay_contact.qualification.trials import Piece, Specimen, eased, middle_dip, noise, pieces
+from relay_contact.qualification.words import COARSE, limits
 
 G = 9.80665
 READ: Any = "from memory"
@@ -80,8 +83,11 @@ def test_the_tolerance_of_a_pulse_moves_the_margin(tmp_path: Path) -> None:
     (tested,) = judged(described(PUBLISHED), tmp_path, test)
     assert tested.margin.tolerance
     low, high = tested.margin.tolerance
+    assert limits(tested.first).endswith(f"; {three(low)} to {three(high)} by the pulses within the tolerance")
     assert low == pytest.approx(tested.margin.margin / 1.2, rel=0.02)
     assert high == pytest.approx(tested.margin.margin / 0.8, rel=0.02)
+    corners = [(each.acceleration, each.duration) for each in test.corners]
+    assert corners == [pytest.approx((peak, length)) for peak in (40.0, 60.0) for length in (9.9e-3, 12.1e-3)]
 
 
 def test_a_recorded_pulse_is_that_of_the_generator(tmp_path: Path) -> None:
@@ -115,8 +121,13 @@ def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
     test = history(path)
     assert [each for each in test.record.notes if "unequal" in each]
     assert [each for each in test.record.notes if "before its begin" in each]
-    found = [piece.threshold(CALM, 1.0)[0] for piece in pieces(CALM, test.course(), 1.0)]
-    whole = Piece(test.course().padded(CALM.response.settling()), 1.0, 0.0)
+    around, course = pieces(CALM, test.course(), 1.0), test.course()
+    for piece in around:
+        # At its place in the record.
+        last = np.interp(piece.begin + piece.course.end, course.time, course.acceleration)
+        assert piece.course.acceleration[-1] == pytest.approx(last)
+    found = [piece.threshold(CALM, 1.0)[0] for piece in around]
+    whole = Piece(course.padded(CALM.response.settling()), 1.0, 0.0)
     assert not whole.follow(CALM, 0.9985 * min(found))[0]
     assert whole.follow(CALM, 1.0015 * min(found))[0]
 
@@ -126,17 +137,24 @@ def test_a_record_alone_is_a_test(tmp_path: Path) -> None:
     relay.write_text("parameters.effects.axialForce = 'FromPreload'\n")
     time = np.linspace(0, 4e-3, 201)
     pulse = -30 * np.sin(np.pi * time / 4e-3)
+    time += 7
     (tmp_path / "two.csv").write_text(
         "time [ms];x [g];temperature [degC];y [m/s2]\n"
-        + "\n".join(f"{1e3 * t};{a};20;{9.80665 * a / 2}" for t, a in zip(time, pulse, strict=True))
+        + "\n".join(f"{1e3 * t:.9g};{a};20;{9.80665 * a / 2}" for t, a in zip(time, pulse, strict=True))
     )
     found = qualify(relay, history=[tmp_path / "two.csv"], out=tmp_path, component=COMPONENT)
     first, second = found["two.csv, x"], found["two.csv, y"]
     assert second.margin.margin == pytest.approx(2 * first.margin.margin, rel=2e-4)
     # What is drawn is the failure itself, at the level of the margin: just longer than allowed, without force.
     for each in (first, second):
-        assert 10e-6 <= each.margin.curves["failing"]["closed contact"] < 60e-6
-        assert min(each.margin.curves["course"]) <= 0
+        curves = each.margin.curves
+        assert 10e-6 <= curves["failing"]["closed contact"] < 60e-6
+        assert min(curves["course"]) <= 0
+        # At the times of the record: the pulse bends the spring most at its middle.
+        assert curves["whole"][0][0] == 7
+        failing = float(each.margin.weakest.split()[-2])
+        assert failing == pytest.approx(7.002, abs=1e-3)
+        assert curves["time"][int(np.argmin(curves["course"]))] == pytest.approx(failing, abs=2e-4)
     # Sketch, margins, wear, and a figure of each record.
     assert (tmp_path / "qualification.html").read_text(encoding="utf-8").count("<svg") == 5
 
@@ -174,6 +192,7 @@ def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.C
         low = found[name]["low"]
         assert bool(low) == (name != "calm")
         assert float(low or 0) < exact
+    assert [float(found[name]["low"]) == 0 for name in ("rate 6000", "rate 3000", "rate 1000")] == [False, True, True]
     assert "period" not in found["rate 48000"]["notes"]
     assert UNKNOWN in printed
     # In place of contributions and chance.
@@ -203,8 +222,41 @@ def test_a_pulse_of_damped_sines_meets_its_spectrum(required: Any) -> None:  # n
         own = solve_ivp(motion, (0, time[-1]), [0, 0], max_step=0.05 / frequency, rtol=1e-6)
         absolute = np.abs(omega * own.y[1] / 10 + omega**2 * own.y[0]).max()
         assert found == pytest.approx(absolute, rel=0.01)
+    # At its end there is nothing, for which the contact is watched until it is calm.
+    assert acceleration[-1] == 0
     # No change of velocity is left, beside that of the pulse.
     assert abs(np.trapezoid(acceleration, time)) < 1e-2 * np.abs(acceleration).max() / (2 * np.pi * corners[0])
+
+
+def test_the_response_to_a_blow_comes_after_it() -> None:
+    """Of an oscillator without damping: its angular frequency times the change of velocity, 100 m/s2 in 0.1 ms."""
+    found = synthesis.response(np.full(10, 100.0), 1e-5, np.array([100.0]), 1e6)
+    assert found == pytest.approx(2 * np.pi * 100 * 1e-2, rel=0.01)
+
+
+def test_a_density_is_one_sided() -> None:
+    """Of white noise of 3 m/s2 rms up to half of the rate, 1 / STEP: twice its mean square times the step."""
+    noise_ = np.random.default_rng(1).normal(0.0, 3.0, 2**17)
+    found = judgement.density(noise_, np.array([5e3, 1e4, 2e4]), 2 ** (1 / 3))
+    assert found == pytest.approx([2 * 9.0 * STEP] * 3, rel=0.1)
+
+
+def test_the_figure_of_a_spectrum_shows_that_it_is_met(tmp_path: Path) -> None:
+    test = Spectrum("spectrum", "", READ, ((100.0, 20.0), (1000.0, 500.0)))
+    (tested,) = judged(described(PUBLISHED), tmp_path, test)
+    whole, power, _, srs = plots.record(tested.first).axes
+    reached, required, density = (np.array(line.get_ydata()) for line in (*srs.lines[:2], power.lines[0]))
+    assert (required[0], required[-1]) == pytest.approx((20.0, 500.0))
+    assert reached[-1] == pytest.approx(500.0, rel=0.09)
+    decibels = 20 * np.log10(reached / required)
+    told = [float(each) for each in re.findall(r"-?[\d.]+", str(srs.lines[2].get_label()))]
+    assert told == pytest.approx([decibels.min(), decibels.max()], abs=0.01)
+    assert -0.3 < told[0] < told[1] < 0.71
+    # In g: its peak; and its rms in the range of the spectrum, in which most of it is, by the density.
+    acceleration = test.course().acceleration / G
+    assert whole.dataLim.y1 == pytest.approx(acceleration.max())
+    rms = np.trapezoid(density, np.array(power.lines[0].get_xdata())) ** 0.5
+    assert 0.7 < rms / np.sqrt(np.mean(acceleration**2)) < 1.05
 
 
 def test_densities_by_slopes() -> None:
@@ -245,6 +297,9 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
         largest = response.reserve / response.random(own, 0.0, float(-np.expm1(-1.0)))
         # Peaks come in clusters of some: an uncertainty of the number by a fifth is one of the level by 2 %.
         assert largest == pytest.approx(peaks[-crossed], rel=0.03)
+    # The largest of them is the first of those that are simulated.
+    deepest, *_ = pieces(replace(CALM, response=response), noise(test)[0], 1.0)
+    assert deepest.guess == pytest.approx(response.reserve / peaks[-1], rel=0.01)
     # Without sines, Rice's own formula.
     bare = replace(test, sines=())
     rms_, mean = response.moments(bare)
@@ -253,6 +308,19 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     )
     tiny = replace(test, sines=((200.0, 1e-6),))
     assert response.random(tiny, 0.0) == pytest.approx(response.random(bare, 0.0), rel=1e-4)
+
+
+@pytest.mark.parametrize("parts", permutations((0.9, 1.0, 1.1)))
+def test_of_three_dips_the_middle_one_counts(parts: tuple[float, ...]) -> None:
+    class Dip(Piece):
+        """Fails from its part of the level on."""
+
+        def tried(self, *_: object) -> Any:  # noqa: ANN401
+            return lambda level: ({"contact": 1e-5} if level >= self.longer else {}, 0.0)
+
+    still = Course(np.zeros(2), np.zeros(2))
+    dips: list[Piece] = [Dip(still, 1.0, begin, part) for begin, part in enumerate(parts)]
+    assert middle_dip(CALM, dips)[0] == pytest.approx(1.0, rel=1e-4)
 
 
 def test_clipping_bounds_what_follows_the_acceleration_and_hardly_what_resonates() -> None:
@@ -326,16 +394,24 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     relay.write_text(f"{text}axes.lateral = [0.1]\n")
     with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral = .*one participation for each of the"):
         Relay.read(relay, COMPONENT)
+    still = tmp_path / "still.toml"
+    still.write_text(Path(str(spring)).read_text().replace(f"participation = {parts[1]}", "participation = 0.0"))
+    relay.write_text(f"{text.replace(str(spring), str(still))}axes.lateral = {parts}\n")
+    with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral.2 = .*mode 2 has none in the spring file"):
+        Relay.read(relay, COMPONENT)
 
 
 def test_a_number_that_no_verdict_depends_on_is_no_evidence() -> None:
     sine = Standard.read("MIL-PRF-28776").tests[0]
     # The time of the sweep is from memory, but no verdict depends on it.
     assert sine.weakest_evidence == "read in the standard"
+    # The density of the noise is from memory, too.
+    assert Standard.read("MIL-PRF-28776").tests[1].weakest_evidence == "from memory"
 
 
 def test_a_course_begins_gently_where_it_does_not_begin_at_rest() -> None:
     course = Course(np.array([0.0, 1.0]), np.array([2.0, 2.0]))
     padded = course.padded(0.1)
-    assert padded.acceleration[0] == 0
+    assert padded.acceleration[:3].tolist() == [0, 2, 2]
+    assert padded.time[:3] == pytest.approx([0, 0.2, 0.3])
     assert padded.end == pytest.approx(1.3)

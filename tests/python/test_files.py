@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from matplotlib.figure import Figure
 
 from component import COMPONENT, ROOT
-from relay_contact import RelayContactError, Scene, run, scenes
+from relay_contact import RelayContactError, Scene, plot, run, scenes
 from relay_contact.command import main
 from relay_contact.files import read_toml
 from relay_contact.qualification import Relay, Standard, qualify, relays, standards
+from relay_contact.qualification import relay as relay_files
 from relay_contact.qualification.excitation import BAND, NARROWEST, overall
 from relay_contact.qualification.response import respond
 from relay_contact.schema import line
@@ -87,7 +89,12 @@ def written(path: Path, content: dict[str, Any]) -> Path:
 
 
 @pytest.mark.parametrize(("kind", "shipped"), SHIPPED, ids=lambda each: getattr(each, "stem", each))
-def test_every_changed_entry_of_a_file_is_refused_or_in_the_result(kind: str, shipped: Path, tmp_path: Path) -> None:
+def test_every_changed_entry_of_a_file_is_refused_or_in_the_result(
+    kind: str, shipped: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Parameters that do not fit together have tests of their own: the component is spared some thousand blows."""
+    monkeypatch.setattr(relay_files, "blow", lambda _, values, changed=None: [{**values, **(changed or {})}])
+    monkeypatch.setattr(relay_files, "check_held", lambda *_: None)
     content = read_toml(shipped)
     for tests in (each for each in content.values() if isinstance(each, list)):
         # Of many that are alike.
@@ -393,6 +400,7 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"contact.force": 1.0}, "an output, which cannot be set"),
         ({"effects.contactLaw": "Bound"}, "allowed is Hertz, Linearised, Bonded, Rough; did you mean Bonded"),
         ({"beam.length": "long"}, "allowed is a finite number"),
+        ({"beam.length": True}, "beam.length = True: not allowed, allowed is a finite number"),
         ({"solver.modes": 2.5}, "solver.modes = 2.5: not allowed, allowed is a whole number"),
         ({"effects.excitation": float("nan")}, "allowed is None, Sine"),
         ({"beam.file": 3.0}, "beam.file = 3.0: not allowed, allowed is a text"),
@@ -452,12 +460,35 @@ def test_arguments_of_the_command_that_do_not_fit_are_refused(
     assert message in capsys.readouterr().err
 
 
-def test_a_sweep_needs_two_frequencies_and_a_duration_above_zero(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.filterwarnings("ignore:loadtxt")
+def test_what_cannot_be_drawn_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table, head = tmp_path / "table.csv", "time,contact.force\n"
+    for text, sweep, message in (
+        *((head, each, "DURATION have to be greater than 0") for each in ("0 100 0 1", "10 -1 0 1", "10 100 0 0")),
+        (f"{head}0,1\n1,2\n", "10 100 5 1", "table.csv: no row from 5 to 6 s, in the time of the sweep"),
+        *((each, "", "table.csv: not a table as `relay-contact run`") for each in (head, f"{head}0,x\n", "\udcff\n")),
+    ):
+        table.write_bytes(text.encode(errors="surrogateescape"))
+        assert main(["plot", str(table), *(["--sweep", *sweep.split()] if sweep else [])]) == 1
+        assert message in capsys.readouterr().err
+
+
+def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for sweep in ("0 100 0 1", "10 -1 0 1", "10 100 0 0"):
-        assert main(["plot", str(tmp_path / "none.csv"), "--sweep", *sweep.split()]) == 1
-        assert "FIRST, LAST and DURATION have to be greater than 0" in capsys.readouterr().err
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    table = tmp_path / "table.csv"
+    table.write_text("time,contact.force\n0,1\n0.5,0.2\n0.7,0\n0.8,0\n0.9,0.3\n1,0.3\n")
+    for sweep in (None, (10.0, 1000.0, 0.5, 0.4)):
+        plot.draw(table, "title", sweep)
+    over_time, over_frequency = (figure.axes[0].lines[0].get_xydata() for figure in drawn)
+    assert over_time == pytest.approx(np.array([[0, 100], [0.5, 20], [0.7, 0], [0.8, 0], [0.9, 30], [1, 30]]))
+    # Logarithmic: in the middle of the duration the root of both.
+    assert over_frequency == pytest.approx(np.array([[10, 20], [100, 0], [10**2.5, 0], [1000, 30]]))
+    # Shaded where it is open.
+    (shade,) = drawn[0].axes[0].collections
+    assert np.unique(np.array(shade.get_paths()[0].vertices)[:, 0]) == pytest.approx([0.7, 0.8])
 
 
 def test_what_takes_long_shows_progress(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomlkit
-from scipy.stats import binom
+from scipy.stats import binom, t
 
 import measured
 from component import COMPONENT, ROOT
@@ -23,6 +23,7 @@ from relay_contact.identification import Identification
 from relay_contact.identification.measurement import Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.identification.relay_file import put
+from relay_contact.identification.report import silent
 from relay_contact.qualification import Relay
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
@@ -152,18 +153,18 @@ def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
         found(data, relay=relay)
 
 
-def asked(tmp_path: Path, measurements: list[Measurement]) -> Identification:
-    """Identify the relay of a record from near values."""
+def asked(tmp_path: Path, measurements: list[Measurement], *parameters: str) -> Identification:
+    """Identify the relay of a record from near values: all that they are of, unless parameters are named."""
     relay = tmp_path / "relay.toml"
     relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in measured.GUESSED.items()))
-    paths = []
+    paths: list[Path] = []
     for each in measurements:
-        paths.append(tmp_path / each.path)
+        paths.append(tmp_path / f"{len(paths)}-{each.path}")
         over = {"static force": "travel", "ring-down": "time"}[each.kind]
         head = f"# calibration = {each.calibration}\n{over},{each.quantity}\n"
         rows = (f"{x!r},{y!r}" for x, y in zip(each.over.tolist(), each.values.tolist(), strict=True))
         paths[-1].write_text(head + "\n".join(rows) + "\n")
-    return found(*paths, relay=relay, parameters=list(measured.RINGING))
+    return found(*paths, relay=relay, parameters=list(parameters or measured.RINGING))
 
 
 @pytest.mark.parametrize("calibration", [0.005, 0.1])
@@ -226,6 +227,41 @@ def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -
         assert laboratory.predict(ring, values) == pytest.approx(expected, rel=1e-5)
 
 
+def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
+    laboratory, level = Laboratory(COMPONENT), CLEAN["chatter"]
+    data = Measurement(Path("level.csv"), "chatter level", measured.LEVELS, "level", "m/s2", level)
+    assert laboratory.predict(data, {**measured.TRUTH}) == pytest.approx(level, rel=1e-4)
+    # The stiffness of a rough contact falls with the force: near its resonance it opens a fifth above the linear one.
+    rough = next(model for model in Relay.read("paper", COMPONENT).models if model.name == "rough contact")
+    factors = laboratory.correction(replace(data, over=np.array([1000.0, 1200.0])), rough.parameters)
+    assert 1.1 < factors.max() < 1.3
+
+
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
+    force, ring = measured.record(0.25, 1e4, 0.01, SEED)
+    stiffness, damping = "beam.youngsModulus", "beam.stiffnessDamping"
+    over = np.linspace(-1e-4, 2e-4, 60)
+    line = np.interp(over, force.over, measured.pressed())
+    drift = 0.01 * np.sin(np.linspace(0, np.pi, 60))
+    gauges = [replace(force, over=over, values=factor * line) for factor in (1.0, 1.05)]
+    # Beyond where the contact opens there is no force.
+    beyond = np.append(-4e-4, force.over), np.append(0.0, force.values)
+    for data, sought, told in (
+        ([replace(force, over=over, values=line + drift)], [stiffness], "neighbouring residuals are alike"),
+        (gauges, [stiffness], r"the instrument would have to show [+-]\S+ %, more than its 0.5 %"),
+        ([ring, replace(ring, over=1.01 * ring.over)], [stiffness, damping], "frequency or rate of decay do not agree"),
+        ([replace(force, calibration=0.0)], [stiffness], "its instrument is taken as exact"),
+        ([replace(force, over=beyond[0], values=beyond[1])], [stiffness], "rows in which the contact is open tell"),
+    ):
+        assert any(re.search(told, note) for note in asked(tmp_path, data, *sought).notes), told
+    assert asked(tmp_path, [force], "contact.overtravel", stiffness).notes == []
+    rows = [f"{f},400,{20 * value}" for f, value in zip(measured.FREQUENCY, CLEAN["response"], strict=True)]
+    (tmp_path / "strong.csv").write_text("\n".join(["frequency [Hz],acceleration [m/s2],force [N]", *rows]) + "\n")
+    (note,) = found(tmp_path / "strong.csv", parameters=[damping]).notes[1:]
+    assert "the contact opens, at " in note
+
+
 def test_a_ring_down_that_is_sampled_too_coarsely_is_refused(tmp_path: Path) -> None:
     # At 400 rows per second 223 Hz look like 177 Hz; at 225 like 2 Hz.
     for rate, message in ((400.0, r"rings at 177 Hz, by the relay's file at 2\d\d Hz, with 400 rows per second: too"),
@@ -272,6 +308,11 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     ]
     moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
+    assert result["beam.youngsModulus"].half > result["beam.youngsModulus"].by_others["tip.mass"]
+    assert f"beam.youngsModulus: of its interval, tip.mass {100 * moved:.2g} % comes" in " ".join(silent(result))
+    # And the other way around: what is known from elsewhere is not sought.
+    relay.write_text(relay.read_text().replace("tip.mass", names[0]).replace(str(measured.TRUTH["tip.mass"]), "1.2e11"))
+    assert list(found(ring, relay=relay, parameters=names).missing) == [names[0]]
 
 
 def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:
@@ -300,7 +341,13 @@ def test_an_instrument_that_may_be_wrong_widens_the_intervals(tmp_path: Path) ->
     names = ["beam.youngsModulus"]
     relay = tmp_path / "relay.toml"
     relay.write_text(f"parameters.contact.overtravel = {measured.TRUTH['contact.overtravel']}\n")
-    assert not holds(found(path, relay=relay, parameters=names), names[0], measured.TRUTH[names[0]])
+    result = found(path, relay=relay, parameters=names)
+    assert not holds(result, names[0], measured.TRUTH[names[0]])
+    # The regression of a force in proportion to the stiffness, to the digits of the file.
+    force, line = 1.015 * values["force"], CLEAN["force"]
+    left = force - line * (force @ line) / (line @ line)
+    half = t.ppf(0.975, len(line) - 1) * np.sqrt(left @ left / (len(line) - 1) * (line @ line)) / (force @ line)
+    assert result[names[0]].half == pytest.approx(half, rel=2e-3)
     path.write_text("# calibration = 0.02\n" + path.read_text())
     result = found(path, relay=relay, parameters=names)
     assert holds(result, names[0], measured.TRUTH[names[0]])

@@ -18,8 +18,9 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
+from relay_contact.qualification.judgement import transient_level
 from relay_contact.qualification.page import inputs, warned, write
-from relay_contact.qualification.parts import CLOSED
+from relay_contact.qualification.parts import CLOSED, CONTACT
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import respond
 from relay_contact.qualification.results import Chance
@@ -62,12 +63,11 @@ def varied(relay: Relay, count: int, seed: int) -> list[Values]:
     ]  # fmt: skip
 
 
-def fails(values: Values, test: Asked, level: float) -> bool:
+def fails(specimen: Specimen, test: Asked, level: float) -> bool:
     """Tell whether a relay fails a test at a factor of its level, by the component alone: no linear response leads it.
 
     A sine is tried over all frequencies of its range, 2 % apart.
     """
-    specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
     if isinstance(test, Shock):
         (piece,) = pieces(specimen, test.course(), 1.0)
         return any(piece.follow(specimen, sign * level)[0] for sign in (-1, 1))
@@ -80,7 +80,7 @@ def fails(values: Values, test: Asked, level: float) -> bool:
     )
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_the_interval_of_a_shock_is_that_of_brute_force(seed: int) -> None:
     relay = drawn(seed)
     several(relay, SHOCK, 150)
@@ -103,9 +103,13 @@ def several(relay: Relay, test: Asked, count: int) -> None:
     shares = (0.025, 0.16, 0.5, 0.84, 0.975)
     levels = np.quantile(position.margins(test, part.margin).margins, shares, method="hazen")
     assert (part.low, part.high) == (levels[0], levels[-1])
+    # As many draws as it takes.
+    surface = position.surfaces[test.name]
+    assert surface.error < 0.03 * np.std(surface.values)
 
     def first(values: Values) -> int:
-        return bisect_left(levels, True, key=lambda level: fails(values, test, float(level)))
+        specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold, 1e-3))
+        return bisect_left(levels, True, key=lambda level: fails(specimen, test, float(level)))
 
     firsts = np.array([first(values) for values in varied(relay, count, 99)])
     for number, (level, share) in enumerate(zip(levels, shares, strict=True)):
@@ -117,7 +121,7 @@ def several(relay: Relay, test: Asked, count: int) -> None:
 
 def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path: Path) -> None:
     """Sine to 96 % of the resonance: the margin falls steeply where the resonance comes nearer."""
-    values: Values = {"beam.stiffnessDamping": 5e-6, "contact.damping": 2e-6}
+    values: Values = {"beam.stiffnessDamping": 1e-5, "contact.damping": 4e-6}
     natural = respond(COMPONENT, values, CONTACTS.threshold).natural
     relay = described(values, {"beam.thickness": Distribution(part=0.04)})
     test = replace(SINE, frequencies=(10.0, 0.96 * natural), acceleration=3.0)
@@ -135,7 +139,7 @@ def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path:
     assert abs((part.high - part.margin) / (part.margin - part.low) - 1) > 0.1
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(8))
 def test_verdict_margin_and_text_agree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
     """Levels near those that fail, where a contradiction would show."""
     monkeypatch.setattr(positions, "DRAWS", 64)
@@ -191,10 +195,34 @@ def coherent(finding: Finding) -> None:
             assert chance.failing >= 0.975
         case _:
             assert part.low <= 1 <= part.high
+    assert passes_text(part).startswith("<") == (part.passes == min(part.wear["overtravel"]))
     if part.passes is None:
         assert finding.verdict != "pass"
     else:
         assert (part.passes <= part.overtravel * (1 + 1e-12)) == (finding.verdict == "pass")
+
+
+def test_what_a_search_has_missed_is_found_at_the_level_of_the_test() -> None:
+    """Searches that end too high, or in the other direction: margins do not contradict what the test itself shows."""
+    tests = replace(SINE, acceleration=40.0), RANDOM, SHOCK, replace(SHOCK, name="weak", acceleration=10.0)
+    own = placed(described({}), *tests)
+    for test in tests[2:]:
+        right, pulses = transient_level(own, test)[0], own.pieces[test.name]
+        pulses["closing"] = [replace(pulses["closing"][0], guess=0.5 * right.factor)]
+        shocked = transient_level(own, test)[0]
+        assert shocked.factor == pytest.approx(right.factor, rel=2e-4)
+        assert shocked.weakest == "opening direction"
+    own.weakest["sine"] = 1000.0, 1.2, [CLOSED]
+    shaken = judgement.vibration(own, tests[0], FEW)[0][CONTACT]
+    assert shaken.factor <= 1
+    assert "fails at the level of the test where linear theory does not expect it" in shaken.limits
+    part, decides, piece = own.middle["random"]
+    linear = own.linear(own.specimen.response, RANDOM)
+    failing = scaled(RANDOM, 1.02 * part * linear)
+    assert isinstance(failing, Random)
+    own = placed(described({}), failing)
+    own.middle["random"] = 1.1 * part, decides, piece
+    assert judgement.random_level(own, failing)[0].factor <= 1
 
 
 def test_passes_below_what_was_computed_is_told_so(tmp_path: Path) -> None:
@@ -211,6 +239,9 @@ def test_a_failure_without_an_end_is_a_failure() -> None:
     lengths, _ = steady(specimen, 3000.0, 3000.0, False)
     # More than a period: the longest, not the mean.
     assert lengths[CLOSED] > 1 / 3000.0
+    # None that ends as the start is forgotten: at 2 kHz a sudden vibration opens from 52 g on, a steady one from 65 g.
+    calm = replace(specimen, values={}, response=respond(COMPONENT, {}, CONTACTS.threshold))
+    assert steady(calm, 2000.0, 58 * 9.80665, False)[0] == {}
 
 
 def test_each_model_is_judged_and_all_have_to_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -242,7 +273,7 @@ def test_pages_have_all_inputs_and_the_date_if_asked(tmp_path: Path, monkeypatch
         pages.append((tmp_path / "qualification.html").read_text(encoding="utf-8"))
     page, dated = pages
     assert page == dated.replace(" <small>1 April 2030</small>", "")
-    for text in ("12.345 mg", "± 3.77 %", "RelayContact 0.", "rigid relay", "contact.moving.poissonRatio"):
+    for text in ("12.345 mg", "25 °C", "± 3.77 %", "RelayContact 0.", "rigid relay", "contact.moving.poissonRatio"):
         assert text in page
     assert "friction.coefficient" not in page
 

@@ -14,8 +14,19 @@ import pytest
 from fmpy import simulate_fmu
 
 from component import COMPONENT, FMU, ROOT
-from relay_contact import Component, Contact, RelayContactError, Scene, run
+from relay_contact import (
+    Component,
+    Contact,
+    RelayContactError,
+    RelayContactWarning,
+    Scene,
+    Values,
+    qualification,
+    read_table,
+    run,
+)
 from relay_contact.command import main
+from relay_contact.component import sine
 
 
 def test_a_run_has_names_and_units() -> None:
@@ -66,6 +77,33 @@ def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
         Component(other)
     with pytest.raises(RelayContactError, match=r"is missing: build it with"):
         Component(str(tmp_path / "none.fmu"))
+
+
+def test_the_command_runs_a_scene_as_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ["--stop", "1e-3", "--step", "1e-4", "--output", "tip.velocity", "--out", str(tmp_path)]
+    assert main(["run", "paper-1khz", *options, "--set", "excitation.frequency=500"]) == 0
+    table = read_table(tmp_path / "paper-1khz,excitation.frequency=500.csv")
+    assert table["time"] == pytest.approx(np.linspace(0, 1e-3, 11))
+    force = table["contact.force"]
+    assert f" {force.min():.6g} to {force.max():.6g} N\n" in capsys.readouterr().out
+    assert np.ptp(table["tip.velocity"]) > 0
+
+
+def test_the_command_passes_on_all_options_of_a_qualification(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: dict[str, Any] = {}
+
+    def asked(*files: Any, **options: Any) -> None:  # noqa: ANN401
+        given.update(options, files=files)
+        raise RelayContactError("seen")
+
+    monkeypatch.setattr(qualification, "qualify", asked)
+    text = "paper --standard NAME --history a --history b --test sine --unit g --rate 5e4 --quick --workers 3 --pdf"
+    assert main(["qualify", *text.split(), "--cluster", "tcp://host:1", "--date", "today", "--out", "folder"]) == 1
+    del given["component"]
+    assert given == {
+        "files": ("paper", "NAME"), "history": ["a", "b"], "tests": ["sine"], "unit": "g", "rate": 5e4, "quick": True,
+        "workers": 3, "pdf": True, "cluster": "tcp://host:1", "date": "today", "out": Path("folder"), "progress": True,
+    }  # fmt: skip
 
 
 def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) -> None:
@@ -119,6 +157,13 @@ def test_the_notebook_runs(capsys: pytest.CaptureFixture[str]) -> None:
     # The blows of the shown periods set the axis, not that of the first closing before them.
     assert names["axes"].get_ylim()[1] < 1.1 * 100 * names["chatter"]["contact.force"][-300:].max()
     assert "did you mean beam.length?" in capsys.readouterr().out
+
+
+def test_a_step_tells_what_the_component_warns_of() -> None:
+    COMPONENT.told.clear()
+    values: Values = {**sine(900.0, 900.0), "solver.tolerance": 1e-11, "solver.modes": 16}
+    with COMPONENT.started(values) as contact, pytest.warns(RelayContactWarning, match="may be wrong by more than"):
+        contact.step(0.0, 0.02)
 
 
 def test_each_instance_has_its_own_messages_and_leaves_none_that_others_need() -> None:

@@ -26,6 +26,8 @@ def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> Non
     assert first.acceleration == pytest.approx(G * VALUES, abs=1e-5)
     assert second.acceleration == pytest.approx(2 * VALUES, abs=1e-6)
     assert read(path, "Y")[0].channel == "y"
+    # The units of the file count.
+    assert np.array_equal(read(path, unit="g")[1].acceleration, second.acceleration)
     assert [note for note in first.notes if "12.5 s" in note]
     assert not [note for note in first.notes if "unequal" in note]
     with pytest.raises(RelayContactError, match=r"no channel z; there are x, temp, y"):
@@ -59,6 +61,8 @@ def test_unequal_steps_are_told_and_times_have_to_rise(tmp_path: Path) -> None:
     (record,) = read(path)
     assert [note for note in record.notes if "unequal, 1000 to 2000 µs" in note]
     assert record.time[:4] == pytest.approx([0, 1e-3, 3e-3, 4e-3])
+    # Straight lines take off what they do in the longest step.
+    assert record.kept(100.0) == pytest.approx(np.sinc(0.2) ** 2)
     path.write_text("time [ms],a [g]\n0,0\n1,1\n1,2\n" + MORE)
     with pytest.raises(RelayContactError, match=r"value 3: .* allowed is more than the time before"):
         read(path)

@@ -1,5 +1,7 @@
 """`qualify` of a relay with pusher and armature: which part fails first, by closed forms, statics and brute force."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,15 +9,17 @@ from component import COMPONENT
 from qualified import CONTACTS, described, judged, placed
 from relay_contact import Values
 from relay_contact.component import half_sine, sine
-from relay_contact.qualification import Assessment, Standard
+from relay_contact.qualification import FEW, Assessment, Standard, judgement
+from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.judgement import searched, transient
 from relay_contact.qualification.page import write
-from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, all_parts
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, Rest, all_parts
 from relay_contact.qualification.position import Position
-from relay_contact.qualification.relay import Relay
+from relay_contact.qualification.relay import Model, Relay
+from relay_contact.qualification.words import part_rows, reasons
 
 G = 9.80665
 ARMATURE: dict[str, float] = {
@@ -182,7 +186,9 @@ TESTS = (
 def assessed(tmp_path_factory: pytest.TempPathFactory) -> Assessment:
     """Judge the weakly held relay."""
     relay, out = described({**WEAK, "coil.relativeCurrent": 1.0}, UNSURE), tmp_path_factory.mktemp("judged")
-    found = Assessment(relay, Standard("own", CONTACTS, TESTS), judged(relay, out, *TESTS), out)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(positions, "DRAWS", 32)
+        found = Assessment(relay, Standard("own", CONTACTS, TESTS), judged(relay, out, *TESTS), out)
     write(found, COMPONENT)
     return found
 
@@ -200,13 +206,20 @@ def test_the_verdict_is_that_of_the_part_that_fails_first(assessed: Assessment) 
         if own.margin < 1:
             assert CORE in own.failed
             assert own.least[CORE] == 0
+        assert np.interp(own.overtravel, own.wear["overtravel"], own.wear["margin"]) == pytest.approx(own.margin)
         assert own.chance
         effects = own.chance.effects
         assert max(effects, key=lambda name: effects[name]) in (
             "armature.holdForce", "chance of the largest dip",
         )  # fmt: skip
-    # The hold force, less what it has to carry, is what the level follows: the interval in closed form.
     slow = assessed["sine"].margin
+    # Of the overtravel, that of the pusher included, half leaves half of the force.
+    forces = []
+    for less in (0.0, slow.overtravel / 2):
+        with COMPONENT.started({**WEAK, "contact.overtravel": -5e-5 - less}) as contact:
+            forces.append(contact.get("contact.force"))
+    assert forces[1] == pytest.approx(forces[0] / 2, rel=0.02)
+    # The hold force, less what it has to carry, is what the level follows: the interval in closed form.
     with COMPONENT.started(WEAK) as contact:
         held = contact.get("step.minimumStopForce")
     assert slow.high / slow.margin - 1 == pytest.approx(np.hypot(0.1 * 3.0 / held, 0.05), rel=0.08)
@@ -219,6 +232,11 @@ def test_page_and_tables_name_the_parts(assessed: Assessment) -> None:
     for text in texts:
         assert text in page, text
     assert "as in a rigid relay" not in page
+    for tested in assessed:
+        (told,) = [row[7] for row in part_rows(tested.first) if row[0] == f"· {CORE}"]
+        assert (told == "holds") == (CORE not in tested.margin.failed)
+        # Parts have limits of their own.
+        assert {f"· {CONTACT}", f"· {PUSHER}"} <= {row[0] for row in reasons(tested)}
     table = assessed.table
     assert (table[f"{CORE} margin"] < table["margin"] * (1 + 4e-4)).all()
     assert (table["fails first"] == CORE).all()
@@ -239,6 +257,18 @@ def test_a_draw_that_does_not_hold_the_armature_fails() -> None:
     margins = {each.part: each.linear(released[each.part], SLOW) for each in own.parts}
     assert margins[CORE] == 0
     assert margins[CONTACT] == 0
+
+
+def test_what_fails_at_rest_is_said() -> None:
+    loose = position(WEAK, LONG)
+    loose.rest = Rest(is_open=False)
+    worn = replace(placed(described({}), LONG), model=Model("worn", {"contact.overtravel": 1e-9}, 0.0))
+    for own, told in (
+        (loose, "the armature rests at neither of its stops"),
+        (worn, "interrupted at rest: more than 600 Ω of contact resistance"),
+    ):
+        found = judgement.judged(own, LONG, FEW)
+        assert (found.verdict, found.limits) == ("FAIL", told)
 
 
 def test_a_part_that_is_not_shaken_is_said_to_hold() -> None:

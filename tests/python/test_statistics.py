@@ -1,5 +1,6 @@
 """Distributions, correlations, chances and indices: against closed forms; a relay file that identification wrote."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -11,8 +12,12 @@ from qualified import described, placed
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import LIMITS, Correlation, Distribution
 from relay_contact.qualification.excitation import Shock
+from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.position import Position
+from relay_contact.qualification.relay import Model
+from relay_contact.qualification.results import Chance
 from relay_contact.qualification.statistics import MANY, Surface, chance, drawn, first_order
+from relay_contact.qualification.words import chance_text
 
 SLOW = Shock("slow", "", "from memory", 20.0, 0.1)
 
@@ -32,6 +37,12 @@ def test_distributions_by_name(entries: Any, ends: tuple[float, float]) -> None:
     found = Distribution(**entries)
     assert found.factor(norm.ppf(LIMITS), 2.0) == pytest.approx(ends, abs=2e-4)
     assert found.half(2.0) == pytest.approx((ends[1] - ends[0]) / 2, abs=2e-4)
+    told = [float(each) / 100 for each in re.findall(r"[+-]?\d+\.?\d*", found.told(2.0))]
+    assert told == pytest.approx(
+        [ends[1] - 1] if "part" in entries and len(entries) == 1 else np.array(ends) - 1, abs=3e-4
+    )
+    # None changes its sign.
+    assert Distribution(part=0.9).factor(np.array(-9.0), 2.0) == 0.01
 
 
 def slow_shock(names: tuple[str, ...], coefficient: float = 0.0) -> tuple[Position, float]:
@@ -60,6 +71,29 @@ def test_a_correlation_changes_the_interval_as_it_should(monkeypatch: pytest.Mon
         assert told.error < 2e-3
 
 
+def test_what_the_component_finds_beside_linear_theory_is_where_it_found_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if its levels went with the scores of three parameters, the last of which hardly matters; 1 % off in draws."""
+    slopes = 0.02 * np.array([1.0, 2.0, 3.0])
+
+    def turn(own: Position, test: Asked, number: int, expected: float) -> float:
+        return expected + float(own.surfaces[test.name].scores[number] @ slopes if number < 7 else 0.01)
+
+    position, margin = slow_shock(("contact.overtravel", "beam.youngsModulus", "contact.curvatureRadius"))
+    test = replace(SLOW, acceleration=1.1 * margin * SLOW.acceleration)
+    position = replace(position, tests=(test,))
+    monkeypatch.setattr(Position, "turn", turn)
+    # By linear theory it fails at 1/1.1 of the level, in the component at the level: draws next to that are confirmed.
+    linear, found = (position.margins(test, 1.0, confirmed) for confirmed in (False, True))
+    scores = position.independent[:, :3]
+    inside = (np.abs(scores) < 1.95).all(axis=1)
+    assert np.log(found.margins / linear.margins)[inside] == pytest.approx((scores @ slopes)[inside], abs=1e-9)
+    assert found.confirmed == 3 * 2 + 2
+    assert found.error == pytest.approx(-np.expm1(-0.01))
+    # What the model leaves out is a part of the margin, with 95 % confidence.
+    allowed = replace(position, model=Model("one", {}, 0.1)).margins(test, 1.0, False).margins / linear.margins
+    assert np.quantile(allowed, LIMITS) == pytest.approx((0.9, 1.1), abs=4e-3)
+
+
 def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(positions, "DRAWS", 64)
     position, margin = slow_shock(("contact.overtravel",))
@@ -77,12 +111,20 @@ def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_intervals_of_a_chance() -> None:
     margins = np.full(MANY, 2.0)
+
+    def told() -> str:
+        return chance_text(Chance(*chance(margins, 0.0), {"tip.mass": 0.1}, {}, 0, 0.0))
+
     # The rule of three, two-sided: ln(40) / n.
     assert chance(margins, 0.0) == pytest.approx((0.0, 0.0, np.log(40) / MANY), rel=1e-3)
+    assert told() == "< 369 ppm"
     margins[:100] = 0.5
     assert chance(margins, 0.0) == pytest.approx((0.01, 0.00814, 0.01215), abs=1e-5)
+    assert told() == "10000 ppm (8140 ppm to 12100 ppm)"
     margins[:200] = 0.995
     assert chance(margins, 0.01)[1:] == pytest.approx((0.0, 0.0229), abs=1e-4)
+    margins[:] = 0.5
+    assert told() == "all but < 369 ppm"
 
 
 def test_a_surface_follows_margins_and_tells_its_error() -> None:

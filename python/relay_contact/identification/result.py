@@ -13,6 +13,7 @@ from relay_contact.identification.fit import STEP, Fit, Set, Unknown
 from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
+from relay_contact.schema import leaves
 from relay_contact.spring import PREFIX, STIFFNESS, known
 
 REACH = float(np.log(300.0))
@@ -136,12 +137,7 @@ def unknowns(
 
 def has(position: Mapping[str, Any], name: str) -> bool:
     """Tell whether the table of a position gives a parameter itself."""
-    table: Any = position.get("parameters", {})
-    for key in name.split("."):
-        if not isinstance(table, dict) or key not in table:
-            return False
-        table = table[key]
-    return True
+    return any(each == name for each, *_ in leaves(position.get("parameters", {})))
 
 
 def sought(

@@ -129,9 +129,8 @@ class Course:
         return np.asarray(twice.mean(axis=0))
 
     def part(self, begin: float, end: float) -> "Course":
-        """Return what is between two times (s), its own points alone; over its first fifth it rises from 0."""
+        """Return what is from the time of a point to another time (s), its own points; over a fifth it rises from 0."""
         first, last = np.searchsorted(self.time, (begin, end))
-        first = max(0, int(first) - 1)
         time, acceleration = self.time[first : last + 1], self.acceleration[first : last + 1]
         since = np.minimum((time - time[0]) / (0.2 * (time[-1] - time[0])), 1.0)
         rise = (1 - np.cos(np.pi * since)) / 2 if first else np.ones(len(time))

@@ -145,12 +145,8 @@ class Response:
 
     def course(self, course: Course, sign: float, opening: float) -> float:
         """Return the factor of a course that fails, with a sign."""
-        return self.reserve / max(dip(sign * self.change(course.padded(self.settling()).sampled()), opening), 1e-12)
-
-
-def dip(change: Array, opening: float) -> float:
-    """Return the level below which a change stays for a time (s)."""
-    return float(-stays(change, opening).min())
+        change = self.change(course.padded(self.settling()).sampled())
+        return self.reserve / max(float(-stays(sign * change, opening).min()), 1e-12)
 
 
 def stays(change: Array, opening: float) -> Array:

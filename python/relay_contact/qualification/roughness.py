@@ -4,9 +4,7 @@ By the number of J. A. Greenwood, K. L. Johnson and E. Matsubara, Wear 100 (1984
 curvature over the square of the radius of Hertz's circle, which is the roughness over the indentation.
 """
 
-from dataclasses import dataclass
-
-from relay_contact.component import Component, Values
+from relay_contact.component import Component
 from relay_contact.qualification.relay import Relay
 
 SMOOTH = 0.05
@@ -14,51 +12,33 @@ SMOOTH = 0.05
 PAGE = "docs/contact-law.md"
 
 
-@dataclass(frozen=True)
-class Spot:
-    """The circle in which smooth spheres touch."""
-
-    force: float
-    """Contact force at rest, N."""
-    radius: float
-    """Of the circle, m."""
-    indentation: float
-    """Of both bodies together, m."""
-
-
-def spot(component: Component, values: Values) -> Spot | None:
-    """Return the circle of Hertz at rest with these parameters; none if the contact is open."""
-    with component.started(values) as contact, contact.explained():
-        (force,) = contact.real("preload.force")
-    if force <= 0:
-        return None
-    compliance = sum(
-        (1 - component.value(values, f"contact.{side}.poissonRatio") ** 2)
-        / component.value(values, f"contact.{side}.youngsModulus")
-        for side in ("moving", "fixed")
-    )
-    curvature = component.value(values, "contact.curvatureRadius")
-    radius = (0.75 * force * curvature * compliance) ** (1 / 3)
-    return Spot(force, radius, radius**2 / curvature)
-
-
 def told(component: Component, relay: Relay) -> list[str]:
     """Return lines about the contact in each position."""
     lines = []
     for name, values in relay.positions.items():
-        circle = spot(component, values)
-        if circle is None:
+        with component.started(values) as contact, contact.explained():
+            force = contact.get("preload.force")
+        if force <= 0:
             lines.append(f"{name}: open at rest")
             continue
+        compliance = sum(
+            (1 - component.value(values, f"contact.{side}.poissonRatio") ** 2)
+            / component.value(values, f"contact.{side}.youngsModulus")
+            for side in ("moving", "fixed")
+        )
+        curvature = component.value(values, "contact.curvatureRadius")
+        # The circle in which smooth spheres touch.
+        radius = (0.75 * force * curvature * compliance) ** (1 / 3)
+        indentation = radius**2 / curvature
         lines.append(
-            f"{name}: {100 * circle.force:.3g} cN; a smooth contact touches in a circle of radius "
-            f"{1e6 * circle.radius:.3g} um, indented by {1e9 * circle.indentation:.3g} nm"
+            f"{name}: {100 * force:.3g} cN; a smooth contact touches in a circle of radius "
+            f"{1e6 * radius:.3g} um, indented by {1e9 * indentation:.3g} nm"
         )
         if relay.roughness is None:
-            limit = f"{1e9 * SMOOTH * circle.indentation:.2g} nm"
+            limit = f"{1e9 * SMOOTH * indentation:.2g} nm"
             lines.append(f"  no roughness given: Hertz's law holds up to {limit} rms, both surfaces together ({PAGE})")
             continue
-        number = relay.roughness / circle.indentation
+        number = relay.roughness / indentation
         holds = "holds" if number <= SMOOTH else "does not hold"
         lines.append(
             f"  Greenwood-Johnson-Matsubara number {number:.3g} for {1e6 * relay.roughness:g} um rms: "
