@@ -16,6 +16,6 @@ pub use crate::excitation::generator::Generator;
 pub use crate::harmonic::{Response, opening_threshold, resistance_amplitude, response};
 pub use crate::math::legendre::gauss;
 pub use crate::math::roots::bracketed;
-pub use crate::model::{Model, Parts};
+pub use crate::model::Model;
 pub use crate::preload::{Initial, Preload};
 pub use crate::state::State;

@@ -99,7 +99,7 @@ fn a_small_swing_of_the_resistance_is_that_of_the_force() {
         let [resistance] = settled(&scene, [RealOutput::ContactResistance]);
         let error = (resistance.norm() * scene.excitation.amplitude / expected - 1.0).abs();
         // Of the second power of the relative amplitude of the force.
-        let ratio = force / model.preload().force;
+        let ratio = force / model.preload.force;
         assert!(error < ratio * ratio, "{kind:?}: {error:e}, {ratio:e}");
     }
 }

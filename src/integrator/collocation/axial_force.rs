@@ -274,7 +274,7 @@ mod tests {
                 let (after, to) = (model.energy(&state), state.contact().approach);
                 if let Source::Given = source {
                     // The given force does the work on the tip in place of the contact.
-                    let contact = |d| model.law().energy_above_tangent(model.preload.indentation, d);
+                    let contact = |d| model.law.energy_above_tangent(model.preload.indentation, d);
                     before += contact(to) - contact(from) - given * (to - from);
                 }
                 wrong = wrong.max((after - before - work).abs());
