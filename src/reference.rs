@@ -13,7 +13,7 @@ pub use crate::contact::linear::Linear;
 pub use crate::contact::power::{Power, reduced_modulus};
 pub use crate::electrical::ElectricalContact;
 pub use crate::excitation::generator::Generator;
-pub use crate::harmonic::{Response, opening_threshold, resistance_amplitude, response};
+pub use crate::harmonic::{Response, opening_threshold, response};
 pub use crate::math::legendre::gauss;
 pub use crate::math::roots::bracketed;
 pub use crate::model::Model;
