@@ -30,7 +30,7 @@ impl Criterion {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Interruptions {
     /// Whether there is an interruption.
-    in_progress: bool,
+    pub in_progress: bool,
     /// Instant at which it began, or the make between two of them, s; `None`: closed since the start.
     turned: Option<f64>,
     /// Completed interruptions.
@@ -67,11 +67,6 @@ impl Summary {
 }
 
 impl Interruptions {
-    /// Whether the contact is interrupted.
-    pub fn in_progress(&self) -> bool {
-        self.in_progress
-    }
-
     /// Begins or ends an interruption at an instant (s).
     pub fn turn(&mut self, criterion: &Criterion, time: f64) {
         *self = Self {

@@ -80,7 +80,7 @@ impl Circuits {
         let all = counted.all(|(other, at)| *at || other.criterion.is_none() || other.circuit != link.circuit);
         if let (Some(circuit), Some(criterion)) = (link.circuit, &link.criterion)
             && let Some(circuit) = self.interruptions.get_mut(circuit)
-            && circuit.in_progress() != all
+            && circuit.in_progress != all
         {
             circuit.turn(criterion, time);
         }

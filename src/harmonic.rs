@@ -34,7 +34,7 @@ pub struct Response {
 /// It is infinite or not a number at a resonance without damping.
 pub fn response(model: &Model, omega: f64) -> Response {
     let stiffness = model.preload.contact_stiffness;
-    let contact = Complex::new(stiffness, omega * model.law().damping() * stiffness);
+    let contact = Complex::new(stiffness, omega * model.law.damping() * stiffness);
     let zero = Complex::new(0.0, 0.0);
     // Displacement of the tip per force on it, and per base acceleration.
     let (compliance, shaken) = model.modes.iter().fold((zero, zero), |(compliance, shaken), mode| {
@@ -49,19 +49,6 @@ pub fn response(model: &Model, omega: f64) -> Response {
         force: -contact * displacement,
         displacement,
     }
-}
-
-/// Amplitude of the contact resistance under a small amplitude of the contact force (N) about the preload force, Ohm:
-/// the slope `|dR/dF|` times it. 0 without the resistance effect.
-///
-/// The resistance is far from linear in the force: an amplitude of a third of the preload force makes it swing by 47 %
-/// upwards and 24 % downwards (power law). For its extremes take the conductance at the extremes of the force.
-pub fn resistance_amplitude(model: &Model, force_amplitude: f64) -> f64 {
-    let electrical = model.links.first().and_then(|link| link.electrical);
-    electrical.map_or(0.0, |electrical| {
-        let force = model.preload.force;
-        electrical.conductance_slope(force) * electrical.conductance(force).powi(-2) * force_amplitude
-    })
 }
 
 /// Base acceleration (m/s2) whose linear response at the angular frequency `omega` (rad/s) has an amplitude of the

@@ -56,11 +56,11 @@ const MATERIAL: [RealParameter; 2] = [RealParameter::BeamYoungsModulus, RealPara
 #[derive(Clone, Debug)]
 pub struct Model {
     /// The scene.
-    pub(crate) scene: Scene,
+    pub scene: Scene,
     /// The uniform section of the spring, or that of a spring as stiff at its contact.
-    pub(crate) section: Section,
+    pub section: Section,
     /// The law of the first contact.
-    pub(crate) law: Law,
+    pub law: Law,
     /// Where forces act on the modes.
     pub(crate) ports: Vec<Port>,
     /// The laws of these forces.
@@ -70,9 +70,9 @@ pub struct Model {
     /// Load on each mode per base acceleration, with opposite sign.
     pub(crate) participations: Modal,
     /// The static equilibrium, the reference of the motion.
-    pub(crate) preload: Preload,
+    pub preload: Preload,
     /// The modes of all springs and of the armature, frequency ascending.
-    pub(crate) modes: Vec<Mode>,
+    pub modes: Vec<Mode>,
     /// Those of the deviation that shows how errors grow.
     pub(crate) slowest: Slowest,
     /// The axial force, if it follows the deflection continuously.
@@ -81,13 +81,13 @@ pub struct Model {
     /// step is requested.
     pub(crate) closed_loop: Option<Box<ClosedLoop>>,
     /// Generated base acceleration.
-    pub(crate) generator: Generator,
+    pub generator: Generator,
     /// What is part of the preload of the inputs at the start.
     pub(crate) initial: Initial,
     /// The armature, if there is one.
     pub(crate) armature: Option<Armature>,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
-    pub(crate) force_scale: f64,
+    pub force_scale: f64,
     /// What the modes left out do.
     pub(crate) resolution: Resolution,
     /// Force at the held tip per base acceleration that varies slowly, kg.
@@ -97,7 +97,7 @@ pub struct Model {
     /// Static displacement of the tip per force on it, m/N: that of the modes.
     pub(crate) compliance: f64,
     /// Lowest natural frequency with the closed contacts as springs, Hz.
-    pub(crate) frequency: f64,
+    pub frequency: f64,
     /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and whether
     /// it is the fixed contact's.
     pub(crate) missed: Option<(f64, f64, bool)>,
@@ -111,21 +111,6 @@ pub struct Model {
     pub(crate) simd: Simd,
 }
 
-/// The parts of a model that can be exchanged: see [`Model::with`].
-#[derive(Clone, Debug)]
-pub struct Parts {
-    /// The modes of all springs and of the armature, frequency ascending; [`MAX_MODES`] at most.
-    pub modes: Vec<Mode>,
-    /// The contact law.
-    pub law: Law,
-    /// The static equilibrium, the reference of the motion.
-    pub preload: Preload,
-    /// Generated base acceleration.
-    pub generator: Generator,
-    /// Force scale of the tolerance, N.
-    pub force_scale: f64,
-}
-
 impl Model {
     /// Sets ports and links, with these laws of the contacts.
     pub(crate) fn link(&mut self, laws: Laws) {
@@ -136,7 +121,7 @@ impl Model {
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
         self.slowest = Slowest::of(&self.modes, &ports);
         (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
-        if let (Some((_, friction)), Some(law)) = (self.friction(), self.law().power()) {
+        if let (Some((_, friction)), Some(law)) = (self.friction(), self.law.power()) {
             // Of a contact open at rest the force scale.
             let at_rest = self.preload.force;
             let usual = if at_rest > 0.0 { at_rest } else { self.force_scale };
@@ -144,29 +129,22 @@ impl Model {
         }
     }
 
-    /// The same model with other parts, for test problems without a spring. It takes no exact steps.
+    /// The same model with another law of the contact, other modes, preload, generator or force scale, for test problems without a
+    /// spring. It takes no exact steps.
     #[must_use]
-    pub fn with(mut self, change: impl FnOnce(&mut Parts)) -> Self {
+    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
         let law_of = |role: Option<usize>| self.links.get(role?)?.contact().copied();
         let (parallel, second) = (law_of(self.roles.parallel), law_of(self.roles.second));
-        let mut parts = Parts {
-            law: *self.law(),
-            modes: self.modes,
-            preload: self.preload,
-            generator: self.generator,
-            force_scale: self.force_scale,
-        };
-        change(&mut parts);
-        parts.modes.truncate(MAX_MODES);
-        let tolerance = self.scene.solver.effective_tolerance();
-        (self.modes, self.preload) = (parts.modes, parts.preload);
-        (self.generator, self.force_scale, self.closed_loop) = (parts.generator, parts.force_scale, None);
+        change(&mut self);
+        self.modes.truncate(MAX_MODES);
+        self.closed_loop = None;
         self.compliance = self.modes.iter().map(Mode::compliance).sum();
         self.resolution = Resolution::default();
+        let tolerance = self.scene.solver.effective_tolerance();
         self.tolerance = Tolerance::new(tolerance, self.force_scale);
         // Friction keeps its share of the force that the scene has.
         self.link(Laws {
-            contact: parts.law.parting(tolerance, self.force_scale),
+            contact: self.law.parting(tolerance, self.force_scale),
             parallel,
             second,
         });
@@ -270,22 +248,6 @@ impl Model {
         })
     }
 
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// The uniform section of the spring, or that of a spring as stiff at its contact.
-    pub fn section(&self) -> Section {
-        self.section
-    }
-
-    /// The law of the first contact.
-    #[inline(always)]
-    pub fn law(&self) -> &Law {
-        &self.law
-    }
-
     /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
     pub(crate) fn room(&self, displacement: f64) -> f64 {
         if self.roles.second.is_some() {
@@ -298,31 +260,6 @@ impl Model {
     /// Whether interruptions of a contact are counted.
     pub(crate) fn counts_interruptions(&self) -> bool {
         self.links.iter().any(|link| link.criterion.is_some())
-    }
-
-    /// The static equilibrium.
-    pub fn preload(&self) -> Preload {
-        self.preload
-    }
-
-    /// The modes of all springs and of the armature, frequency ascending.
-    pub fn modes(&self) -> &[Mode] {
-        &self.modes
-    }
-
-    /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
-    pub fn force_scale(&self) -> f64 {
-        self.force_scale
-    }
-
-    /// Lowest natural frequency with the contact as a spring, Hz.
-    pub fn frequency(&self) -> f64 {
-        self.frequency
-    }
-
-    /// Axial force from the deflection, with `effects.axialForce` FromDeflection.
-    pub fn axial(&self) -> Option<&Feedback> {
-        self.axial.as_deref()
     }
 
     /// The index of friction among the links, where there is any.

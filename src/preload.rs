@@ -18,7 +18,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::armature::AtRest;
-use crate::beam::springs::{FixedSpring, Springs};
+use crate::beam::springs::{Beside, Springs};
 use crate::contact::friction::tangential_share;
 use crate::contact::power::Power;
 use crate::error::SceneError;
@@ -141,7 +141,7 @@ impl<'a> Pressed<'a> {
         [support, _, pushed]: Ways,
     ) -> Self {
         let fixed = springs.fixed.as_ref();
-        let fixed_alone = fixed.map_or(0.0, FixedSpring::free_deflection);
+        let fixed_alone = fixed.map_or(0.0, Beside::free_deflection);
         Self {
             scene,
             springs,
@@ -151,7 +151,7 @@ impl<'a> Pressed<'a> {
             share: tangential_share(scene),
             overtravel: scene.contact.overtravel + support + fixed_alone,
             fixed_alone,
-            give: fixed.map_or(0.0, FixedSpring::compliance),
+            give: fixed.map_or(0.0, Beside::compliance),
         }
     }
 

@@ -37,7 +37,7 @@ impl Model {
         let (index, friction) = self.friction()?;
         let contact = *state.links.get(CONTACT)?;
         let along = state.links.get_mut(index)?;
-        Some((friction, self.law().power()?, contact, along, &mut state.slip))
+        Some((friction, self.law.power()?, contact, along, &mut state.slip))
     }
 
     /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than

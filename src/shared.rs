@@ -67,14 +67,8 @@ impl<T> Drop for Shared<T> {
 }
 
 /// Things that simulations leave for others.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Shelf<T>(Mutex<Vec<T>>);
-
-impl<T> Default for Shelf<T> {
-    fn default() -> Self {
-        Self(Mutex::new(Vec::new()))
-    }
-}
 
 impl<T> Shelf<T> {
     /// Takes the last one that is such.

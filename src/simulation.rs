@@ -380,7 +380,7 @@ impl Simulation {
         index.is_some_and(|index| {
             let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);
             // At the instant of closing there is no force yet.
-            self.motion.force(&self.model, index) > 0.0 || closed && !self.model.law().never_opens()
+            self.motion.force(&self.model, index) > 0.0 || closed && !self.model.law.never_opens()
         })
     }
 }

@@ -44,7 +44,7 @@ fn the_coil_says_which_of_two_positions_it_has() {
     let scene = relay();
     let given = scene.armature;
     let on = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
-    let preload = on.model().preload();
+    let preload = on.model().preload;
     assert!(preload.force > 0.1 && preload.pusher_force > 0.1 && on.boolean(BooleanOutput::PusherClosed));
     let place = on.real(RealOutput::ArmatureDisplacement);
     close(
@@ -66,7 +66,7 @@ fn the_coil_says_which_of_two_positions_it_has() {
     close(on.real(RealOutput::ArmatureGap), given.core_position - place, 1e-9);
 
     let off = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
-    let preload = off.model().preload();
+    let preload = off.model().preload;
     assert_eq!(
         (preload.force, preload.pusher_force, preload.armature.magnet_force),
         (0.0, 0.0, 0.0)
@@ -74,7 +74,7 @@ fn the_coil_says_which_of_two_positions_it_has() {
     close(preload.armature.rest_force, given.return_force, 1e-3);
     // Too weak a current holds nothing.
     let weak = Simulation::new(&scene, &coil(0.2), 0.0).unwrap();
-    assert!(weak.model().preload().armature.core_force == 0.0);
+    assert!(weak.model().preload.armature.core_force == 0.0);
 }
 
 /// Without current it falls to its rest, and comes back under more than holds it. Over a communication step the mean current counts.
@@ -84,7 +84,7 @@ fn the_coil_lets_go_and_draws_again() {
     let mut simulation = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
     let held = simulation.real(RealOutput::ContactForce);
     let pushed = simulation.real(RealOutput::StepMinimumPusherForce);
-    assert_eq!(pushed, simulation.model().preload().pusher_force);
+    assert_eq!(pushed, simulation.model().preload.pusher_force);
     let ramp = Inputs {
         coil_relative_current_rate: 2e3,
         ..coil(0.5)
@@ -117,7 +117,7 @@ fn a_slow_acceleration_releases_it_at_its_holding_force_over_its_mass() {
     let scene = alone();
     let given = scene.armature;
     let mut simulation = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
-    let held = simulation.model().preload().armature.core_force;
+    let held = simulation.model().preload.armature.core_force;
     let threshold = held / given.mass;
     let (rate, step) = (-threshold / 0.05, 1e-4);
     for n in 0..600 {
@@ -152,7 +152,7 @@ fn a_released_armature_opens_the_contact() {
         assert!(simulation.force_error() < 1e-5);
         let released = simulation.real(RealOutput::ArmatureLastRelease) > 0.0;
         let opened = simulation.real(RealOutput::ContactLastOpening) > 0.0;
-        let back = simulation.real(RealOutput::ContactForce) / simulation.model().preload().force;
+        let back = simulation.real(RealOutput::ContactForce) / simulation.model().preload.force;
         (released, opened, back)
     };
     let (released, opened, _) = run(-100.0);

@@ -333,7 +333,7 @@ fn inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance() {
             };
             for tolerance in [1e-3, 1e-6, 1e-8] {
                 let scene = with(tolerance, 0);
-                let modes = Model::new(&scene, 0.0).unwrap().modes().len();
+                let modes = Model::new(&scene, 0.0).unwrap().modes.len();
                 // What the number of modes makes is no matter of the steps.
                 let (exact, _) = driven(&with(1e-11, i32::try_from(modes).unwrap()), &plan);
                 let (found, _) = driven(&scene, &plan);

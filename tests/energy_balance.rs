@@ -118,22 +118,22 @@ struct Sum {
 /// Powers at an instant, W: put in, dissipated.
 fn powers(rig: &Rig, inputs: &Inputs, since: f64) -> [f64; 2] {
     let Rig { model, state, .. } = rig;
-    let generated = match model.scene().effects.excitation {
+    let generated = match model.scene.effects.excitation {
         ExcitationKind::Sine => {
-            let excitation = &model.scene().excitation;
+            let excitation = &model.scene.excitation;
             excitation.amplitude * (TAU * excitation.frequency * state.time).sin()
         }
         _ => 0.0,
     };
     let base = generated + inputs.base_acceleration + inputs.base_acceleration_rate * (state.time - since);
-    let modes = || model.modes().iter().zip(&state.modes);
+    let modes = || model.modes.iter().zip(&state.modes);
     let by_base: f64 = modes().map(|(mode, at)| -base * mode.participation * at.v).sum();
     let in_beam: f64 = modes().map(|(mode, at)| mode.damping * at.v * at.v).sum();
-    let d = model.preload().indentation + state.contact().approach;
+    let d = model.preload.indentation + state.contact().approach;
     let rate = state.contact().rate;
-    let in_contact = (model.law().force(d, rate) - model.law().force(d, 0.0)) * rate;
+    let in_contact = (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
     [
-        by_base + model.law().force(d, rate) * state.velocities[0],
+        by_base + model.law.force(d, rate) * state.velocities[0],
         in_beam + in_contact,
     ]
 }
@@ -150,10 +150,10 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
         rig.throw(case.launch);
     }
     // The static force does work on the displaced tip.
-    let stored = |rig: &Rig| rig.energy() + rig.model.preload().force * rig.state.displacements[0];
+    let stored = |rig: &Rig| rig.energy() + rig.model.preload.force * rig.state.displacements[0];
     let start = stored(&rig);
     let mut sum = Sum {
-        force_scale: rig.model.force_scale(),
+        force_scale: rig.model.force_scale,
         ..Sum::default()
     };
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands

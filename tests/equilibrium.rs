@@ -60,7 +60,7 @@ fn by_modes(scene: &mut Scene) {
     let mut alone = scene.clone();
     alone.fixed_spring = None;
     let model = Model::new(&alone, 0.0).unwrap();
-    let own = model.modes().iter();
+    let own = model.modes.iter();
     let modes = own.clone().map(|own| GivenMode {
         rotation: Some(own.rotation),
         pusher: Some(own.pusher),

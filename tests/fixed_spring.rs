@@ -45,13 +45,13 @@ fn two_equal_springs_are_a_rigid_wall_in_their_mirror_plane_at_rest() {
     let one = Model::new(&half(scene), 0.0).unwrap();
     // To what the static compliance of a spring of segments is rounded.
     let same = |found, expected| close("at rest", found, expected, 1e-12);
-    same(both.preload().force, one.preload().force);
-    same(both.preload().indentation, 2.0 * one.preload().indentation);
-    same(both.preload().deflection, one.preload().deflection);
-    same(both.preload().fixed_deflection, -one.preload().deflection);
+    same(both.preload.force, one.preload.force);
+    same(both.preload.indentation, 2.0 * one.preload.indentation);
+    same(both.preload.deflection, one.preload.deflection);
+    same(both.preload.fixed_deflection, -one.preload.deflection);
     // In the same way both move without the contact: that is their lowest mode, the cantilever's.
-    let free = one.modes()[0].omega_squared.sqrt() / TAU;
-    close("Hz", both.frequency(), free, 1e-9);
+    let free = one.modes[0].omega_squared.sqrt() / TAU;
+    close("Hz", both.frequency, free, 1e-9);
 }
 
 /// Struck in opposite ways, hard enough to open the contact, both springs move as one of them against the wall.
@@ -63,7 +63,7 @@ fn two_equal_springs_struck_in_opposite_ways_are_one_against_a_rigid_wall() {
     let one = Model::new(&half(scene), 0.0).unwrap();
     // An impulse on each contact: a velocity in proportion to what the mode moves there.
     let impulse = 4e-5;
-    let struck = |model: &Model| -> Vec<f64> { model.modes().iter().map(|mode| impulse * mode.tip).collect() };
+    let struck = |model: &Model| -> Vec<f64> { model.modes.iter().map(|mode| impulse * mode.tip).collect() };
     let (mut pair, mut single) = (Rig::new(both.clone()), Rig::new(one.clone()));
     pair.launch(&struck(&both));
     single.launch(&struck(&one));
@@ -75,13 +75,10 @@ fn two_equal_springs_struck_in_opposite_ways_are_one_against_a_rigid_wall() {
         let [a, b] = [&pair, &single].map(|rig| rig.state.contact().force);
         (least, greatest) = (least.min(b), greatest.max(b));
         // Each is right to the tolerance of the largest force so far.
-        let allowed = 2.0 * tolerance * greatest.max(both.force_scale()).max(one.force_scale());
+        let allowed = 2.0 * tolerance * greatest.max(both.force_scale).max(one.force_scale);
         assert!((a - b).abs() <= allowed, "{time}: {a} {b}");
     }
-    assert!(
-        least == 0.0 && greatest > 3.0 * one.preload().force,
-        "{least} {greatest}"
-    );
+    assert!(least == 0.0 && greatest > 3.0 * one.preload.force, "{least} {greatest}");
 }
 
 /// Both springs lag under a constant acceleration, and give way to the contact force.
@@ -99,7 +96,7 @@ fn gravity_and_contact_force_bend_both_springs() {
     let length = beam.length;
     // Uniform cantilevers (Timoshenko): F L^3 / (3 EI) and q L^4 / (8 EI). The fixed one has the same load, 4 times the stiffness.
     let (per_force, per_load) = (length.powi(3) / (3.0 * bending), length.powi(4) / (8.0 * bending));
-    let preload = model.preload();
+    let preload = model.preload;
     let moving = preload.force * per_force - 50.0 * load * per_load;
     let fixed = -preload.force * per_force / 4.0 - 50.0 * load * per_load / 4.0;
     let same = |found, expected| close("at rest", found, expected, 1e-9);
@@ -128,10 +125,10 @@ fn the_fixed_contact_moves_as_its_outputs_say() {
         if n % 50 == 0 {
             let state = simulation.state_now().unwrap();
             let sum = |shape: fn(&Mode) -> f64| -> f64 {
-                let modes = simulation.model().modes().iter().zip(&state.modes);
+                let modes = simulation.model().modes.iter().zip(&state.modes);
                 modes.map(|(mode, at)| shape(mode) * at.q).sum()
             };
-            let preload = simulation.model().preload();
+            let preload = simulation.model().preload;
             let (moved, tip_moved) = (sum(|mode| mode.fixed), sum(|mode| mode.tip + mode.fixed));
             // A part in 1e8 of the force bends a spring by that of its deflection.
             near(n, fixed, preload.fixed_deflection + moved, 1e-8 * overtravel);

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{self, Model};
+use relay_contact::reference::{self, ElectricalContact, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput, ResistanceKind};
@@ -85,6 +85,8 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
     }
 }
 
+/// A large one is far from linear in the force: an amplitude of a third of the preload force makes the resistance swing by 47 % upwards
+/// and 24 % downwards (power law).
 #[test]
 fn a_small_swing_of_the_resistance_is_that_of_the_force() {
     for kind in [ResistanceKind::PowerLaw, ResistanceKind::Holm] {
@@ -95,11 +97,13 @@ fn a_small_swing_of_the_resistance_is_that_of_the_force() {
         scene.excitation.amplitude = 0.1;
         let model = Model::new(&scene, 0.0).unwrap();
         let force = scene.excitation.amplitude * reference::response(&model, TAU * 1000.0).force.norm();
-        let expected = reference::resistance_amplitude(&model, force);
+        let electrical = ElectricalContact::new(&scene, &model.law).unwrap();
+        let at_rest = model.preload.force;
+        let slope = electrical.conductance_slope(at_rest) * electrical.conductance(at_rest).powi(-2);
         let [resistance] = settled(&scene, [RealOutput::ContactResistance]);
-        let error = (resistance.norm() * scene.excitation.amplitude / expected - 1.0).abs();
+        let error = (resistance.norm() * scene.excitation.amplitude / (slope * force) - 1.0).abs();
         // Of the second power of the relative amplitude of the force.
-        let ratio = force / model.preload().force;
+        let ratio = force / at_rest;
         assert!(error < ratio * ratio, "{kind:?}: {error:e}, {ratio:e}");
     }
 }

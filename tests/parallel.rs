@@ -94,7 +94,7 @@ fn the_preload_of_both_follows_from_beam_formulas() {
         scene.parallel.offset = offset;
         scene.parallel.curvature_radius *= 3.0;
         let model = Model::new(&scene, 0.0).unwrap();
-        let preload = model.preload();
+        let preload = model.preload;
         let together = 1.0 / tip_stiffness(&scene);
         let against = together * (1.0_f64 - share).powi(3);
         let [first, other] = [preload.force, preload.parallel_force];
@@ -235,7 +235,7 @@ fn modes_of_a_forked_spring_are_that_spring() {
     scene.effects.axial_force = AxialForceKind::None;
     let model = Model::new(&scene, 0.0).unwrap();
     let mut given = scene.clone();
-    let own = model.modes().iter();
+    let own = model.modes.iter();
     let modes = own.clone().map(|own| GivenMode {
         parallel: Some(own.parallel),
         ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
@@ -268,7 +268,7 @@ fn contacts_of_all_heights_find_their_preload() {
                         (scene.parallel.offset, scene.contact.overtravel) = (offset, overtravel);
                         let scene = if fork > 0.0 { forked(scene, fork) } else { scene };
                         let model = Model::new(&scene, 0.0).unwrap();
-                        let preload = model.preload();
+                        let preload = model.preload;
                         let closed = [preload.force > 0.0, preload.parallel_force > 0.0];
                         let indented = [preload.indentation > 0.0, preload.parallel_indentation > 0.0];
                         assert_eq!(closed, indented, "{offset} {overtravel}");
@@ -303,7 +303,7 @@ fn tongues_are_the_cantilever_beyond_the_fork() {
     let beyond = spring(12e-3, [3.5e-3, 1.1e-4], 4e-3, None);
     let [all, tongues] = [forked, beyond].map(|segments| {
         scene.spring = spring_file("spring.toml", Shape::Segments(segments));
-        Model::new(&scene, 0.0).unwrap().modes().to_vec()
+        Model::new(&scene, 0.0).unwrap().modes.to_vec()
     });
     let against = all.iter().filter(|mode| mode.tip * mode.parallel < 0.0);
     for (n, (found, expected)) in against.zip(&tongues).take(4).enumerate() {

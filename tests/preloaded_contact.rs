@@ -48,14 +48,14 @@ fn rig(exponent: f64, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> 
     };
     let coefficient = FORCE * (exponent * length).powf(-exponent);
     let law = power(coefficient, exponent, 2.0 * ratios[1] * time);
-    Rig::new(compose(&[mode], law, 0.0, TOLERANCE, FORCE).with(|parts| {
-        parts.preload = Preload {
+    Rig::new(compose(&[mode], law, 0.0, TOLERANCE, FORCE).with(|model| {
+        model.preload = Preload {
             force: FORCE,
             indentation: exponent * length,
             contact_stiffness: STIFFNESS,
             ..Preload::default()
         };
-        parts.generator = Generator::new(&scene);
+        model.generator = Generator::new(&scene);
     }))
 }
 

@@ -38,7 +38,7 @@ fn pusher_and_contact_share_the_bending_of_the_spring() {
     let sag = |x: f64| load * x * x * (6.0 * length * length - 4.0 * length * x + x * x) / (24.0 * bending);
     for place in [3e-4, 6e-4] {
         let simulation = Simulation::new(&scene, &at(place), 0.0).unwrap();
-        let preload = simulation.model().preload();
+        let preload = simulation.model().preload;
         let (force, push) = (preload.force, preload.pusher_force);
         assert!(force > 0.01 && push > force);
         let same = |found, expected| close(place, found, expected, 1e-9);
@@ -52,7 +52,7 @@ fn pusher_and_contact_share_the_bending_of_the_spring() {
     }
     // Too far away, it leaves the spring as it is.
     let simulation = Simulation::new(&scene, &at(-1e-4), 0.0).unwrap();
-    let preload = simulation.model().preload();
+    let preload = simulation.model().preload;
     assert_eq!((preload.force, preload.pusher_force), (0.0, 0.0));
     assert!((preload.pusher_overlap + 1e-4 + sag(x)).abs() < 1e-15);
     assert!(!simulation.boolean(BooleanOutput::PusherClosed));
@@ -90,7 +90,7 @@ fn a_pusher_at_the_tip_is_a_second_contact() {
         greatest = greatest.max(force);
         touches += u32::from(before == 0.0 && force > 0.0);
         before = force;
-        let scale = greatest.max(a.model().force_scale());
+        let scale = greatest.max(a.model().force_scale);
         near(time, push, force, 3.0 * tolerance * scale);
         let (least, other) = (
             a.real(RealOutput::StepMinimumPusherForce),
@@ -137,7 +137,7 @@ fn the_frequency_is_that_of_free_motion() {
     scene.contact.damping = 0.0;
     scene.pusher.damping = 0.0;
     let mut simulation = Simulation::new(&scene, &at(5e-4), 0.0).unwrap();
-    let frequency = simulation.model().frequency();
+    let frequency = simulation.model().frequency;
     // A small push, and where the force passes its mean.
     let push = Inputs {
         base_acceleration: 1e-3,

@@ -17,7 +17,7 @@ impl Integrator for Component {
     }
 
     fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure> {
-        let mut scene = problem.model.scene().clone();
+        let mut scene = problem.model.scene.clone();
         scene.solver.tolerance = tolerance;
         let start = ThreadTime::now();
         let contact = Instance::new();

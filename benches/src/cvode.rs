@@ -92,15 +92,15 @@ fn question(problem: &Problem, tolerance: f64) -> Result<String, Failure> {
         }
         text.push('\n');
     };
-    for mode in model.modes() {
+    for mode in &model.modes {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
-    let Law::Power(power) = model.law() else {
+    let Law::Power(power) = &model.law else {
         return Err(Failure::Stopped("a linear contact".to_owned()));
     };
     line(&[power.coefficient, power.damping, power.exponent]);
     let (amplitude, omega, phase) = problem.sine();
-    line(&[model.preload().force, model.preload().indentation]);
+    line(&[model.preload.force, model.preload.indentation]);
     line(&[amplitude, omega, phase, problem.support_rate]);
     let absolute: Vec<f64> = problem.scales().iter().map(|scale| tolerance * scale).collect();
     line(&[problem.relative * tolerance]);

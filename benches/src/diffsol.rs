@@ -26,7 +26,7 @@ impl Integrator for Diffsol {
     fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure> {
         let start = ThreadTime::now();
         let mut run = Run {
-            forces: vec![problem.model.preload().force],
+            forces: vec![problem.model.preload.force],
             ..Run::default()
         };
         let mut branch = Start {

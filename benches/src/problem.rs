@@ -48,7 +48,7 @@ impl Problem {
 
     /// The same with a change of the scene.
     pub fn with(&self, change: impl FnOnce(&mut Scene)) -> Result<Self, SceneError> {
-        let mut scene = self.model.scene().clone();
+        let mut scene = self.model.scene.clone();
         change(&mut scene);
         let model = Model::new(&scene, 0.0)?;
         Ok(Self { model, ..self.clone() })
@@ -64,7 +64,7 @@ impl Problem {
     pub fn start(&self) -> f64 {
         let times = [(); 3].map(|()| {
             let start = ThreadTime::now();
-            let _ = black_box(Model::new(self.model.scene(), 0.0));
+            let _ = black_box(Model::new(&self.model.scene, 0.0));
             start.elapsed().as_secs_f64()
         });
         times.into_iter().fold(f64::INFINITY, f64::min)
@@ -72,7 +72,7 @@ impl Problem {
 
     /// Number of modes.
     pub fn modes(&self) -> usize {
-        self.model.modes().len()
+        self.model.modes.len()
     }
 
     /// Grid time number `cell`, s.
@@ -85,7 +85,7 @@ impl Problem {
     pub fn sine(&self) -> (f64, f64, f64) {
         let Scene {
             effects, excitation, ..
-        } = self.model.scene();
+        } = &self.model.scene;
         match effects.excitation {
             ExcitationKind::None => (0.0, 0.0, 0.0),
             ExcitationKind::Sine => (excitation.amplitude, TAU * excitation.frequency, excitation.phase),
@@ -104,34 +104,34 @@ impl Problem {
         let (q, v) = state.split_at(self.modes());
         let mut deviation = self.support_rate * time;
         let mut rate = self.support_rate;
-        for ((mode, q), v) in self.model.modes().iter().zip(q).zip(v) {
+        for ((mode, q), v) in self.model.modes.iter().zip(q).zip(v) {
             deviation -= mode.tip * q;
             rate -= mode.tip * v;
         }
-        (self.model.preload().indentation + deviation, rate)
+        (self.model.preload.indentation + deviation, rate)
     }
 
     /// Positive while the contact is closed, m.
     pub fn engagement(&self, time: f64, state: &[f64]) -> f64 {
         let (d, rate) = self.indentation(time, state);
-        self.model.law().engagement(d, rate)
+        self.model.law.engagement(d, rate)
     }
 
     /// Whether the contact is closed at the start.
     pub fn starts_closed(&self) -> bool {
-        self.model.preload().force > 0.0
+        self.model.preload.force > 0.0
     }
 
     /// Whether it can open at all.
     pub fn can_open(&self) -> bool {
-        !self.model.law().never_opens()
+        !self.model.law.never_opens()
     }
 
     /// Force and derivatives on the branch.
     pub fn branch(&self, closed: bool, time: f64, state: &[f64]) -> Branch {
         let (d, rate) = self.indentation(time, state);
         if closed {
-            self.model.law().closed_branch(d, rate)
+            self.model.law.closed_branch(d, rate)
         } else {
             Branch {
                 force: 0.0,
@@ -149,12 +149,12 @@ impl Problem {
 
     /// Derivative of the state.
     pub fn derivative(&self, closed: bool, time: f64, state: &[f64], derivative: &mut [f64]) {
-        let force = self.branch(closed, time, state).force - self.model.preload().force;
+        let force = self.branch(closed, time, state).force - self.model.preload.force;
         let acceleration = self.acceleration(time);
         let (q, v) = state.split_at(self.modes());
         let (q_rate, v_rate) = derivative.split_at_mut(self.modes());
         q_rate.copy_from_slice(v);
-        for (((rate, mode), q), v) in v_rate.iter_mut().zip(self.model.modes()).zip(q).zip(v) {
+        for (((rate, mode), q), v) in v_rate.iter_mut().zip(&self.model.modes).zip(q).zip(v) {
             *rate = mode.tip * force - mode.participation * acceleration - mode.damping * v - mode.omega_squared * q;
         }
     }
@@ -165,7 +165,7 @@ impl Problem {
         let (q, v) = direction.split_at(self.modes());
         let (q_rate, v_rate) = product.split_at_mut(self.modes());
         q_rate.copy_from_slice(v);
-        let modes = self.model.modes();
+        let modes = &self.model.modes;
         let force: f64 = modes
             .iter()
             .zip(q.iter().zip(v))
@@ -179,10 +179,10 @@ impl Problem {
     /// Absolute tolerances of the state per tolerance of the force relative to the force scale: what moves the tip by the
     /// deviation that the contact's stiffness, or its damping, turns into that force, shared by nobody.
     pub fn scales(&self) -> Vec<f64> {
-        let stiffness = self.model.law().tangent_stiffness(self.model.force_scale());
-        let displacement = self.model.force_scale() / stiffness;
-        let velocity = displacement / self.model.law().damping();
-        let of = |scale: f64| self.model.modes().iter().map(move |mode| scale / mode.tip.abs());
+        let stiffness = self.model.law.tangent_stiffness(self.model.force_scale);
+        let displacement = self.model.force_scale / stiffness;
+        let velocity = displacement / self.model.law.damping();
+        let of = |scale: f64| self.model.modes.iter().map(move |mode| scale / mode.tip.abs());
         of(displacement).chain(of(velocity)).collect()
     }
 }

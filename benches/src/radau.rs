@@ -42,7 +42,7 @@ impl Reference {
             ));
         }
         Ok(Self {
-            force_error: largest_difference(&coarse_forces, &forces) / problem.model.force_scale(),
+            force_error: largest_difference(&coarse_forces, &forces) / problem.model.force_scale,
             event_error: largest_difference(&coarse_events, &events),
             forces,
             events,
@@ -134,7 +134,7 @@ impl<'a> Motion<'a> {
             growth,
             modes: vec![ModeMotion::default(); problem.modes()],
             closed: problem.starts_closed(),
-            force: problem.model.preload().force,
+            force: problem.model.preload.force,
         }
     }
 
@@ -188,7 +188,7 @@ impl<'a> Motion<'a> {
     }
 
     fn take(&mut self, trial: Trial) {
-        let law = &self.problem.model.law();
+        let law = &self.problem.model.law;
         let end = STAGES - 1;
         if self.closed {
             let force = law.closed_branch(trial.d[end], trial.rate[end]).force;
@@ -201,7 +201,7 @@ impl<'a> Motion<'a> {
 
     /// How far inside its branch the contact is, m.
     fn inside(&self, d: f64, rate: f64) -> f64 {
-        let engagement = self.problem.model.law().engagement(d, rate);
+        let engagement = self.problem.model.law.engagement(d, rate);
         if self.closed { engagement } else { -engagement }
     }
 
@@ -247,18 +247,18 @@ impl<'a> Motion<'a> {
         // With v = v_0 + w at the stages: M w = hA (r - c v_0 - omega^2 (q_0 + h c_i v_0)), M = 1 + c hA + omega^2
         // (hA)^2, and q = q_0 + h c_i v_0 + hA w.
         let inverses: Option<Vec<Matrix>> = model
-            .modes()
+            .modes
             .iter()
             .map(|mode| (Matrix::identity() + a * mode.damping + a * a * mode.omega_squared).try_inverse())
             .collect();
         let inverses = inverses?;
         let times = tableau.c * h;
-        let mut d = times.map(|t| model.preload().indentation + problem.support_rate * (time + t));
+        let mut d = times.map(|t| model.preload.indentation + problem.support_rate * (time + t));
         let mut rate = ones * problem.support_rate;
         let mut compliance = Matrix::zeros();
         let mut mobility = Matrix::zeros();
         let mut free = Vec::with_capacity(inverses.len());
-        for ((mode, inverse), motion) in model.modes().iter().zip(&inverses).zip(&self.modes) {
+        for ((mode, inverse), motion) in model.modes.iter().zip(&inverses).zip(&self.modes) {
             let ModeMotion { q, q_low, v, v_low } = *motion;
             let held = mode.damping * v + mode.omega_squared * q;
             let load = base * -mode.participation - ones * held - times * (mode.omega_squared * v);
@@ -274,10 +274,10 @@ impl<'a> Motion<'a> {
         let forces = if self.closed {
             self.forces(&d, &rate, &compliance, &mobility)?
         } else {
-            ones * -model.preload().force
+            ones * -model.preload.force
         };
         let end = STAGES - 1;
-        let modes = model.modes().iter().zip(&inverses).zip(free);
+        let modes = model.modes.iter().zip(&inverses).zip(free);
         let changes = modes
             .map(|((mode, inverse), (dq, w))| {
                 let from_force = inverse * (a * (forces * mode.tip));
@@ -294,15 +294,15 @@ impl<'a> Motion<'a> {
     /// Contact forces at the stages, as deviation from the preload force.
     fn forces(&self, d: &Vector, rate: &Vector, compliance: &Matrix, mobility: &Matrix) -> Option<Vector> {
         let model = &self.problem.model;
-        let mut forces = Vector::repeat(self.force - model.preload().force);
+        let mut forces = Vector::repeat(self.force - model.preload.force);
         let mut last = f64::INFINITY;
         for _ in 0..40 {
             let (at, at_rate) = (d - compliance * forces, rate - mobility * forces);
             let mut residual = forces;
             let mut jacobian = Matrix::identity();
             for i in 0..STAGES {
-                let branch = model.law().closed_branch(at[i], at_rate[i]);
-                residual[i] -= branch.force - model.preload().force;
+                let branch = model.law.closed_branch(at[i], at_rate[i]);
+                residual[i] -= branch.force - model.preload.force;
                 for j in 0..STAGES {
                     jacobian[(i, j)] += branch.stiffness * compliance[(i, j)] + branch.damping * mobility[(i, j)];
                 }
@@ -314,7 +314,7 @@ impl<'a> Motion<'a> {
                 return None;
             }
             // Until limited by rounding.
-            if size <= 1e-17 || (size <= 1e-11 * model.force_scale() && size >= 0.5 * last) {
+            if size <= 1e-17 || (size <= 1e-11 * model.force_scale && size >= 0.5 * last) {
                 return Some(forces);
             }
             last = size;
@@ -334,7 +334,7 @@ mod tests {
     /// in modes and time by two other methods, all digits given.
     #[test]
     fn the_reference_opens_and_closes_when_two_other_methods_say() -> Result<(), Box<dyn std::error::Error>> {
-        let mut scene = scenes::chatter("chatter", 0.34)?.model.scene().clone();
+        let mut scene = scenes::chatter("chatter", 0.34)?.model.scene.clone();
         scene.effects.axial_force = AxialForceKind::None;
         scene.solver.modes = scenes::MANY_MODES;
         let problem = Problem::new("without axial force", &scene, 0.0, 0.005, 250)?;

@@ -272,7 +272,7 @@ fn judge(case: &Case, run: &Run, times: Vec<(f64, f64)>) -> Result<Measured, Fai
         least_cost: times.first().copied().unwrap_or(f64::NAN) / problem.end,
         start,
         total: start + time,
-        force_error: largest_difference(&run.forces, &reference.forces) / problem.model.force_scale(),
+        force_error: largest_difference(&run.forces, &reference.forces) / problem.model.force_scale,
         events: run.events.len(),
         event_error: found.map(|events| largest_difference(events, &reference.events)),
         duration_error: found.map(|events| {
@@ -302,7 +302,7 @@ mod tests {
         for integrator in peers().into_iter().chain([own]) {
             match integrator.run(&problem, 1e-7) {
                 Ok(run) => {
-                    let error = largest_difference(&run.forces, &reference.forces) / problem.model.force_scale();
+                    let error = largest_difference(&run.forces, &reference.forces) / problem.model.force_scale;
                     // A hundred steps of a local error of the tolerance.
                     assert!(error < 1e-5, "{}: {error}", integrator.name());
                 }

@@ -46,7 +46,7 @@ fn drift() -> Result<Vec<Check>> {
     }
     ensure!(settled > 0.0, "the contact is open");
     let property = "the force at whole periods remains that at the 41st";
-    let tolerance = 1e-6 * contact.model().force_scale();
+    let tolerance = 1e-6 * contact.model().force_scale;
     Ok(vec![Check::two_runs(property, off, tolerance)])
 }
 

@@ -28,7 +28,7 @@ pub(crate) fn balances(mut scene: Scene, stop: f64, acceleration: impl Fn(f64) -
         pull = worst(pull, -contact.real(RealOutput::StepMinimumForce));
         step += 1;
     }
-    let allowed = scene.solver.effective_tolerance() * contact.model().force_scale() * path;
+    let allowed = scene.solver.effective_tolerance() * contact.model().force_scale * path;
     Ok(vec![
         Check::energy("energy in = stored + dissipated", off, allowed),
         Check::exact("the contact force is never tensile", pull, "N"),

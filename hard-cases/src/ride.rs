@@ -96,7 +96,7 @@ impl Ride {
     pub fn run(&self, parts: u32) -> Result<Outcome> {
         let mut model = Model::new(&self.scene, 0.0)?;
         // Room for the mode that meters the work of the support.
-        if model.modes().len() == MAX_MODES {
+        if model.modes.len() == MAX_MODES {
             let mut scene = self.scene.clone();
             scene.solver.modes = i32::try_from(MAX_MODES)? - 1;
             model = Model::new(&scene, 0.0)?;
@@ -108,7 +108,7 @@ impl Ride {
             participation: 0.0,
             ..Mode::default()
         };
-        model = model.with(|parts| parts.modes.insert(0, massless));
+        model = model.with(|model| model.modes.insert(0, massless));
         let mut rig = Rig::new(model);
         if self.speed != 0.0 {
             rig.throw(self.speed);
@@ -118,7 +118,7 @@ impl Ride {
             forces: Vec::new(),
             largest: 0.0,
             made: 0.0,
-            throughput: lowest + rig.model.preload().force * rig.model.preload().indentation.max(0.0),
+            throughput: lowest + rig.model.preload.force * rig.model.preload.indentation.max(0.0),
             path: 0.0,
             rig,
         };
@@ -174,7 +174,7 @@ impl Ride {
         if numbers.into_iter().chain(modal).any(|x| !x.is_finite()) {
             bail!("not finite at {} s: {numbers:?}", state.time);
         }
-        if state.contact().force < 0.0 && !model.law().never_opens() {
+        if state.contact().force < 0.0 && !model.law.never_opens() {
             bail!(
                 "tensile contact force at {} s: {:e} N",
                 state.time,
@@ -218,7 +218,7 @@ impl Ride {
 impl Outcome {
     /// Allowed error of the contact force, N.
     fn force_error(&self) -> f64 {
-        self.rig.model.force_scale() * self.tolerance()
+        self.rig.model.force_scale * self.tolerance()
     }
 
     /// No energy is generated. A force error of the tolerance generates at most that force times the path of the tip;
@@ -230,13 +230,13 @@ impl Outcome {
 
     /// The forces at the ends of the segments agree with those of another simulation.
     pub fn same_force(&self, other: &Self) -> Check {
-        self.agrees(other, self.rig.model.force_scale())
+        self.agrees(other, self.rig.model.force_scale)
     }
 
     /// The same to what is promised of every scene: the tolerance is relative to the largest force so far.
     pub fn same_force_as_promised(&self, other: &Self) -> Check {
         let largest = self.largest.max(other.largest);
-        self.agrees(other, self.rig.model.force_scale().max(largest))
+        self.agrees(other, self.rig.model.force_scale.max(largest))
     }
 
     /// The forces agree to the tolerance, relative to a force (N).
@@ -248,7 +248,7 @@ impl Outcome {
     }
 
     fn tolerance(&self) -> f64 {
-        self.rig.model.scene().solver.effective_tolerance()
+        self.rig.model.scene.solver.effective_tolerance()
     }
 }
 
@@ -271,14 +271,14 @@ pub(crate) fn conserved(mut rig: Rig, microseconds: u32) -> Result<Vec<Check>> {
         before = rig.state;
     }
     // Rounding: the last of thirteen digits.
-    let allowed = rig.model.scene().solver.effective_tolerance() * rig.model.force_scale() * path + 1e-13 * start;
+    let allowed = rig.model.scene.solver.effective_tolerance() * rig.model.force_scale * path + 1e-13 * start;
     Ok(vec![Check::energy("the energy supplied is conserved", off, allowed)])
 }
 
 /// Impulse of the contact force in excess of the preload force since the start, N s.
 fn meter(rig: &Rig) -> f64 {
     rig.model
-        .modes()
+        .modes
         .first()
         .filter(|mode| mode.tip == METER)
         .map_or(0.0, |_| rig.state.modes[0].v / METER)
@@ -286,6 +286,6 @@ fn meter(rig: &Rig) -> f64 {
 
 /// Work of a base acceleration of 1 m/s2 since the preload, J.
 fn base_work(rig: &Rig) -> f64 {
-    let pairs = rig.model.modes().iter().zip(&rig.state.modes);
+    let pairs = rig.model.modes.iter().zip(&rig.state.modes);
     -pairs.map(|(mode, at)| mode.participation * at.q).sum::<f64>()
 }

@@ -101,7 +101,7 @@ fn seconds() -> Result<Vec<Check>> {
         seconds.step(&Inputs::default(), f64::from(second), 1.0)?;
         off = worst(off, (force(&seconds) - force(&fine)).abs());
     }
-    let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale();
+    let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale;
     let steps = seconds.integer(IntegerOutput::SolverSteps).try_into()?;
     let property = "the same force after whole periods, independent of the run time";
     Ok(vec![

@@ -44,7 +44,7 @@ fn open_for_a_second() -> Result<Vec<Check>> {
     let segments = [(1e-3, -3e-4), (1.0, -3e-4), (1e-3, 0.0), (0.02, 0.0)];
     let segments = segments.map(|(duration, support)| Segment::moved(duration, support));
     let (outcome, mut checks) = Ride::new(Scene::default(), segments).checked()?;
-    let preload = outcome.rig.model.preload().force;
+    let preload = outcome.rig.model.preload.force;
     ensure!(outcome.forces.len() == segments.len());
     let off = (outcome.forces[3] - preload).abs();
     checks.extend([
@@ -71,7 +71,7 @@ fn crushed_and_back() -> Result<Vec<Check>> {
     let moved = |displacement: f64| supported(displacement, 0.0);
     let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0)?;
     let tolerance = scene.solver.effective_tolerance();
-    let allowed = tolerance * contact.model().force_scale();
+    let allowed = tolerance * contact.model().force_scale;
     let preload = contact.real(RealOutput::ContactForce);
     let mut least = f64::INFINITY;
     let mut to = |displacement: f64, duration: f64| {

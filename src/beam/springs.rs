@@ -20,7 +20,7 @@ use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
 use crate::beam::spring::{Basis, Spring};
 use crate::beam::statics::AtPlace;
-use crate::beam::tongues::Tongues;
+use crate::beam::tongues;
 use crate::contact::friction::tangential_share;
 use crate::math::simd::LANES;
 use crate::scene::Scene;
@@ -36,9 +36,9 @@ pub struct Springs {
     /// The moving one.
     pub moving: Spring,
     /// That of the fixed contact, if it is not rigid.
-    pub fixed: Option<FixedSpring>,
-    /// The tongues of the moving one, if it forks.
-    pub tongues: Option<Tongues>,
+    pub fixed: Option<Beside>,
+    /// The tongues of the moving one as they move against each other, if it forks.
+    pub tongues: Option<Beside>,
     /// The armature, which joins their modes.
     pub armature: Option<Armature>,
 }
@@ -69,8 +69,8 @@ impl Springs {
     pub fn new(scene: &Scene) -> Self {
         Self {
             moving: Spring::new(scene),
-            fixed: FixedSpring::new(scene),
-            tongues: Tongues::new(scene),
+            fixed: fixed(scene).map(Beside::new),
+            tongues: tongues::scene(scene).map(Beside::new),
             armature: Armature::new(scene),
         }
     }
@@ -147,9 +147,16 @@ impl Springs {
     pub fn modes(&self, scene: &Scene, [moving, fixed, tongues]: Counts, axial_force: f64) -> Option<Basis> {
         let mut basis = self.moving.modes(scene, moving, axial_force)?;
         if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
-            let fixed = self.fixed.as_ref().and_then(|spring| spring.modes(fixed));
-            let own = self.tongues.as_ref();
-            let tongues = own.and_then(|own| own.modes(tongues, axial_force));
+            let fixed = self.fixed.as_ref().and_then(|own| {
+                own.modes(fixed, 0.0, |mode| {
+                    (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
+                })
+            });
+            let tongues = self.tongues.as_ref().and_then(|own| {
+                own.modes(tongues, axial_force, |mode| {
+                    (mode.parallel, mode.participation) = (-mode.tip, 0.0);
+                })
+            });
             // Modes of others have no part in the shapes of the moving spring.
             let size = basis.shapes.first().map_or(0, DVector::len);
             let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
@@ -189,26 +196,29 @@ impl Springs {
     }
 }
 
-/// The spring of the fixed contact.
+/// The scene with the spring of the fixed contact in the place of the moving one, if it has one.
+fn fixed(scene: &Scene) -> Option<Scene> {
+    let spring = scene.fixed_spring.clone()?;
+    let mut own = scene.clone();
+    (own.spring, own.fixed_spring) = (Some(spring), None);
+    (own.tip.mass, own.tip.rotary_inertia) = (0.0, 0.0);
+    own.beam.mass_damping = scene.fixed.mass_damping;
+    own.beam.stiffness_damping = scene.fixed.stiffness_damping;
+    own.effects.pusher = PusherKind::None;
+    Some(own)
+}
+
+/// A spring beside the moving one, with a scene in which it takes the place of that.
 #[derive(Clone, Debug)]
-pub struct FixedSpring {
-    /// The scene with this spring in the place of the moving one.
+pub struct Beside {
     scene: Scene,
     spring: Spring,
 }
 
-impl FixedSpring {
-    /// That of a scene, if it has one.
-    fn new(scene: &Scene) -> Option<Self> {
-        let spring = scene.fixed_spring.clone()?;
-        let mut own = scene.clone();
-        (own.spring, own.fixed_spring) = (Some(spring), None);
-        (own.tip.mass, own.tip.rotary_inertia) = (0.0, 0.0);
-        own.beam.mass_damping = scene.fixed.mass_damping;
-        own.beam.stiffness_damping = scene.fixed.stiffness_damping;
-        own.effects.pusher = PusherKind::None;
-        let spring = Spring::new(&own);
-        Some(Self { scene: own, spring })
+impl Beside {
+    fn new(scene: Scene) -> Self {
+        let spring = Spring::new(&scene);
+        Self { scene, spring }
     }
 
     /// Deflection that opens the contact, per contact force with the share of friction that comes with it, m/N.
@@ -234,12 +244,10 @@ impl FixedSpring {
         }
     }
 
-    /// Its modes as they act at the contact.
-    fn modes(&self, count: usize) -> Option<Basis> {
-        let mut basis = self.spring.modes(&self.scene, count, 0.0)?;
-        for mode in &mut basis.modes {
-            (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
-        }
+    /// Its modes under an axial compression (N), each changed to what it does at the contacts; `None` at or above the buckling load.
+    fn modes(&self, count: usize, axial_force: f64, at_contacts: impl Fn(&mut Mode)) -> Option<Basis> {
+        let mut basis = self.spring.modes(&self.scene, count, axial_force)?;
+        basis.modes.iter_mut().for_each(at_contacts);
         Some(basis)
     }
 }

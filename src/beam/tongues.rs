@@ -7,46 +7,25 @@
 
 use std::sync::Arc;
 
-use crate::beam::spring::{Basis, Spring};
 use crate::scene::Scene;
 use crate::scene::spring::{PointMass, Segment, Segments, Shape, SpringFile};
 use crate::variables::PusherKind;
 
-/// The tongues as they move against each other.
-#[derive(Clone, Debug)]
-pub struct Tongues {
-    /// The scene with both tongues, side by side from the fork on, in the place of the spring.
-    scene: Scene,
-    /// Its static compliance is the deflection of a contact per force on it less the same force on the other.
-    pub(super) spring: Spring,
-}
-
-impl Tongues {
-    /// Those of a scene, if its spring forks and both contacts are used.
-    pub fn new(scene: &Scene) -> Option<Self> {
-        let file = scene.spring.as_ref().filter(|_| scene.effects.parallel_contact)?;
-        let Shape::Segments(segments) = &file.shape else {
-            return None;
-        };
-        let mut own = scene.clone();
-        own.spring = Some(Arc::new(SpringFile {
-            name: file.name.clone(),
-            shape: Shape::Segments(beyond(segments, segments.fork_position?)),
-        }));
-        own.fixed_spring = None;
-        own.effects.pusher = PusherKind::None;
-        let spring = Spring::new(&own);
-        Some(Self { scene: own, spring })
-    }
-
-    /// Their modes under an axial compression of both (N); `None` at or above the buckling load.
-    pub fn modes(&self, count: usize, axial_force: f64) -> Option<Basis> {
-        let mut basis = self.spring.modes(&self.scene, count, axial_force)?;
-        for mode in &mut basis.modes {
-            (mode.parallel, mode.participation) = (-mode.tip, 0.0);
-        }
-        Some(basis)
-    }
+/// The scene with both tongues, side by side from the fork on, in the place of the spring, if it forks and both contacts are used. The
+/// static compliance is then the deflection of a contact per force on it less the same force on the other.
+pub fn scene(scene: &Scene) -> Option<Scene> {
+    let file = scene.spring.as_ref().filter(|_| scene.effects.parallel_contact)?;
+    let Shape::Segments(segments) = &file.shape else {
+        return None;
+    };
+    let mut own = scene.clone();
+    own.spring = Some(Arc::new(SpringFile {
+        name: file.name.clone(),
+        shape: Shape::Segments(beyond(segments, segments.fork_position?)),
+    }));
+    own.fixed_spring = None;
+    own.effects.pusher = PusherKind::None;
+    Some(own)
 }
 
 /// What lies beyond a fork, as a spring of its own.

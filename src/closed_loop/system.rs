@@ -32,9 +32,9 @@ pub struct ClosedLoop {
     pub(crate) contact: Linear,
     pub(crate) oscillators: Vec<Oscillator>,
     /// Transformation from oscillators (displacement, then velocity of each) to modes.
-    to_modes: Columns,
+    pub(crate) to_modes: Columns,
     /// Transformation from modes (displacement and velocity of each) to oscillators.
-    to_oscillators: Columns,
+    pub(crate) to_oscillators: Columns,
     /// Displacement and velocity of the tip per displacement, then per velocity, of each oscillator.
     pub(crate) tip: Box<[Coordinates; 2]>,
     /// What the modes left out do, of the motion of each oscillator.
@@ -51,7 +51,7 @@ pub struct ClosedLoop {
 
 /// A square matrix by columns, padded with zero columns to a multiple of four.
 #[derive(Clone, Debug)]
-struct Columns {
+pub(crate) struct Columns {
     size: usize,
     entries: Vec<f64>,
 }
@@ -63,7 +63,8 @@ impl Columns {
         Self { size, entries }
     }
 
-    fn times(&self, simd: Simd, factors: &Coordinates) -> Coordinates {
+    /// The product with a motion.
+    pub(crate) fn times(&self, simd: Simd, factors: &Coordinates) -> Coordinates {
         compiled_for!(simd, A => self.compute::<A>(factors))
     }
 
@@ -246,16 +247,6 @@ impl ClosedLoop {
                 let size = x_size + frequency * v_size;
                 x.abs() < ROUNDING * size && frequency * v.abs() < ROUNDING * size
             })
-    }
-
-    /// Motion of the oscillators, from displacement and velocity of each mode of the cantilever.
-    pub(crate) fn of_modes(&self, simd: Simd, modes: &Coordinates) -> Coordinates {
-        self.to_oscillators.times(simd, modes)
-    }
-
-    /// Displacement and velocity of each mode of the cantilever, from the motion of the oscillators.
-    pub(crate) fn modes_of(&self, simd: Simd, oscillators: &Coordinates) -> Coordinates {
-        self.to_modes.times(simd, oscillators)
     }
 
     /// Motion of the oscillators at the end of a step, from the free motion at its start and the particular solution at

@@ -74,10 +74,7 @@ impl Law {
     /// Force and derivatives on the closed branch, continued where the contact would be open.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
-        match self {
-            Self::Power(power) => power.closed_branch(d, rate),
-            Self::Linear(linear) => linear.closed_branch(d, rate),
-        }
+        self.closed_branches(&[d], &[rate]).into()
     }
 
     /// The same at several indentations (m) and velocities (m/s).

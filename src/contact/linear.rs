@@ -3,7 +3,7 @@
 //! `F = max(0, F_0 + k_j0 (d - d_0) + beta_c k_j0 d')`, which the modal and frequency-domain analyses of Machines 2025,
 //! 13(1), 52 use; bonded: the same without `max`.
 
-use crate::contact::{Branch, Branches};
+use crate::contact::Branches;
 use crate::math::nodal::Nodal;
 
 /// Constants of the linear law.
@@ -29,13 +29,7 @@ impl Linear {
         }
     }
 
-    /// The force, also where tensile.
-    #[inline(always)]
-    pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
-        self.closed_branches(&[d], &[rate]).into()
-    }
-
-    /// The same at several indentations (m) and velocities (m/s).
+    /// The force, also where tensile, at several indentations (m) and velocities (m/s).
     #[inline(always)]
     pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
         let mut forces = *d;

@@ -14,9 +14,6 @@ use super::types::{
 };
 
 /// Reads one value for each reference.
-///
-/// # Safety
-/// The contract of the module.
 unsafe fn get<T>(
     c: fmi2Component,
     function: Function,
@@ -25,22 +22,16 @@ unsafe fn get<T>(
     value: *mut T,
     read: impl Fn(&mut Instance, u32) -> Result<T, Failure>,
 ) -> fmi2Status {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        call(c, function, |instance| {
-            let (references, values) = (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?);
-            for (&reference, value) in references.iter().zip(values) {
-                value.write(read(instance, reference)?);
-            }
-            Ok(())
-        })
-    }
+    call(c, function, |instance| {
+        let (references, values) = (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?);
+        for (&reference, value) in references.iter().zip(values) {
+            value.write(read(instance, reference)?);
+        }
+        Ok(())
+    })
 }
 
 /// Sets the values of the references, all or none.
-///
-/// # Safety
-/// The contract of the module.
 unsafe fn set<'a, T: Copy>(
     c: fmi2Component,
     function: Function,
@@ -49,13 +40,10 @@ unsafe fn set<'a, T: Copy>(
     value: *const T,
     read: impl Fn(T) -> Result<Value<'a>, Failure>,
 ) -> fmi2Status {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        call(c, function, |instance| {
-            let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
-            instance.set(references, values.iter().map(|value| read(*value)))
-        })
-    }
+    call(c, function, |instance| {
+        let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
+        instance.set(references, values.iter().map(|value| read(*value)))
+    })
 }
 
 /// Reads real variables.
@@ -66,8 +54,7 @@ pub unsafe extern "C" fn fmi2GetReal(
     nvr: size_t,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    unsafe { get(c, states::GET_REAL, vr, nvr, value, Instance::real) }
+    get(c, states::GET_REAL, vr, nvr, value, Instance::real)
 }
 
 /// Reads integer and enumeration variables.
@@ -78,8 +65,7 @@ pub unsafe extern "C" fn fmi2GetInteger(
     nvr: size_t,
     value: *mut fmi2Integer,
 ) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    unsafe { get(c, states::GET_INTEGER, vr, nvr, value, Instance::integer) }
+    get(c, states::GET_INTEGER, vr, nvr, value, Instance::integer)
 }
 
 /// Reads Boolean variables.
@@ -94,8 +80,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
         let value = instance.boolean(reference)?;
         Ok(if value { fmi2True } else { fmi2False })
     };
-    // SAFETY: the contract of the module.
-    unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
+    get(c, states::GET_BOOLEAN, vr, nvr, value, read)
 }
 
 /// Reads string variables. The strings stay until this function is called for another value.
@@ -107,8 +92,7 @@ pub unsafe extern "C" fn fmi2GetString(
     value: *mut fmi2String,
 ) -> fmi2Status {
     let read = |instance: &mut Instance, reference| instance.string(reference).map(CStr::as_ptr);
-    // SAFETY: the contract of the module.
-    unsafe { get(c, states::GET_STRING, vr, nvr, value, read) }
+    get(c, states::GET_STRING, vr, nvr, value, read)
 }
 
 /// Sets real inputs and parameters. A value outside its range gives `fmi2Discard`, and none is set.
@@ -119,8 +103,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     nvr: size_t,
     value: *const fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_REAL, vr, nvr, value, |value| Ok(Value::Real(value))) }
+    set(c, states::SET_REAL, vr, nvr, value, |value| Ok(Value::Real(value)))
 }
 
 /// Sets integer and enumeration parameters. A value that is not allowed gives `fmi2Discard`, and none is set.
@@ -131,12 +114,9 @@ pub unsafe extern "C" fn fmi2SetInteger(
     nvr: size_t,
     value: *const fmi2Integer,
 ) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    unsafe {
-        set(c, states::SET_INTEGER, vr, nvr, value, |value| {
-            Ok(Value::Integer(value))
-        })
-    }
+    set(c, states::SET_INTEGER, vr, nvr, value, |value| {
+        Ok(Value::Integer(value))
+    })
 }
 
 /// Sets Boolean parameters. Every value except `fmi2False` is true.
@@ -148,8 +128,7 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     value: *const fmi2Boolean,
 ) -> fmi2Status {
     let read = |value| Ok(Value::Boolean(value != fmi2False));
-    // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, read) }
+    set(c, states::SET_BOOLEAN, vr, nvr, value, read)
 }
 
 /// Sets string parameters. A file that cannot be read or is wrong gives `fmi2Discard`, and none is set.
@@ -160,8 +139,6 @@ pub unsafe extern "C" fn fmi2SetString(
     nvr: size_t,
     value: *const fmi2String,
 ) -> fmi2Status {
-    // SAFETY: the contract of the module.
-    let read = |value| unsafe { text(value, "value") }.map(Value::Text);
-    // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_STRING, vr, nvr, value, read) }
+    let read = |value| text(value, "value").map(Value::Text);
+    set(c, states::SET_STRING, vr, nvr, value, read)
 }

@@ -48,7 +48,7 @@ pub(crate) fn commit<const S: usize>(
     }
     if state.steps.is_multiple_of(MANY_STEPS.into()) {
         let indentation = model.preload.indentation + state.contact().approach;
-        let stiffness = model.law().stiffness(indentation);
+        let stiffness = model.law.stiffness(indentation);
         let error = model.resolution.error_of(&state.modes, stiffness);
         state.force_error.note_unresolved(error, model.force_scale);
     }

@@ -177,7 +177,7 @@ impl<'a> Start<'a> {
     /// `None` if the motion in it is not linear, as the contact may open or be interrupted.
     fn new(model: &'a Model, state: &State, drive: &Drive, length: f64, free: &mut Coordinates) -> Option<Self> {
         let closed_loop = model.closed_loop.as_deref()?;
-        let Law::Linear(law) = *model.law() else {
+        let Law::Linear(law) = model.law else {
             return None;
         };
         let contact = &state.links[CONTACT];
@@ -195,7 +195,7 @@ impl<'a> Start<'a> {
         // The force must stay above zero, or above the threshold of an interruption.
         let criterion = model.links.first().and_then(|link| link.criterion);
         let least = criterion.map_or(0.0, |criterion| criterion.force);
-        let watched = !model.law().never_opens() || least > 0.0;
+        let watched = !model.law.never_opens() || least > 0.0;
         let margin = if watched {
             let steady = closed_loop.least_steady_force(model.preload.force, &steady, phasor, length);
             steady - least
@@ -261,7 +261,7 @@ impl<'a> Start<'a> {
         state.velocities = drive.velocities;
         let contact = &mut state.links[CONTACT];
         (contact.approach, contact.rate) = (indentation, rate);
-        contact.force = model.law().force(model.preload.indentation + indentation, rate);
+        contact.force = model.law.force(model.preload.indentation + indentation, rate);
         state.lengths.last = 0.0;
         state.steps += 1;
         true

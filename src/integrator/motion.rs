@@ -264,7 +264,7 @@ impl Motion {
 
     /// Force of the first contact without what its damping adds (N), and the rate of that (N/s).
     pub fn elastic_force(&self, model: &Model) -> (f64, f64) {
-        let (contact, law) = (self.link(model, CONTACT), model.law());
+        let (contact, law) = (self.link(model, CONTACT), &model.law);
         if contact.force <= 0.0 && !law.never_opens() {
             return (0.0, 0.0);
         }
@@ -300,7 +300,7 @@ impl Motion {
     pub(crate) fn friction_rates(&self, model: &Model) -> (f64, Slip) {
         let state = self.state();
         let none = (0.0, Slip::default());
-        let (Some((index, friction)), Some(law)) = (model.friction(), model.law().power()) else {
+        let (Some((index, friction)), Some(law)) = (model.friction(), model.law.power()) else {
             return none;
         };
         let Some((link, along, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else {
@@ -358,7 +358,7 @@ impl Motion {
     pub(crate) fn accelerations(&self, model: &Model, state: &State) -> Modal {
         let base = self.drive.acceleration(self.time) + model.generator.acceleration_before(self.time);
         let modes = with_contact::modes(model, state);
-        let mut accelerations = match model.axial() {
+        let mut accelerations = match model.axial.as_deref() {
             Some(axial) => axial.loads(&model.modes, &modes),
             None => [0.0; MAX_MODES],
         };

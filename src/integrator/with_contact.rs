@@ -20,7 +20,7 @@ pub(crate) fn oscillators(closed_loop: &ClosedLoop, model: &Model, state: &State
         for (pair, mode) in pairs.as_chunks_mut().0.iter_mut().zip(modes) {
             *pair = [mode.q, mode.v];
         }
-        *motion = closed_loop.of_modes(model.simd, &pairs);
+        *motion = closed_loop.to_oscillators.times(model.simd, &pairs);
     }
 }
 
@@ -30,7 +30,7 @@ pub(crate) fn modes(model: &Model, state: &State) -> ModeStates {
     if let Some(closed_loop) = model.closed_loop.as_deref().filter(|_| state.with_contact) {
         let mut motion = [0.0; 2 * MAX_MODES];
         oscillators(closed_loop, model, state, &mut motion);
-        let pairs = closed_loop.modes_of(model.simd, &motion);
+        let pairs = closed_loop.to_modes.times(model.simd, &motion);
         for (mode, [q, v]) in modes.iter_mut().zip(pairs.as_chunks().0) {
             (mode.q, mode.v) = (*q, *v);
         }

@@ -57,7 +57,7 @@ pub struct Workspace {
 fn longest_leap(model: &Model) -> Option<f64> {
     let is_smooth = |law: &Power| (2.0 * law.exponent).fract() == 0.0;
     let mut laws = model.links.iter().filter_map(|link| link.contact()?.power());
-    let leaps = laws.all(is_smooth) && model.axial().is_none() && model.friction().is_none();
+    let leaps = laws.all(is_smooth) && model.axial.is_none() && model.friction().is_none();
     let longest = model.modes.iter().map(ModeOverStep::longest_by_root);
     leaps.then(|| longest.fold(f64::INFINITY, f64::min))
 }

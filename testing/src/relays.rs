@@ -212,7 +212,7 @@ impl Relay {
         let contacts = contacts(&scene);
         let mut course = Course {
             contacts: contacts.len(),
-            scale: simulation.model().force_scale(),
+            scale: simulation.model().force_scale,
             ..Course::default()
         };
         let part = size / f64::from(self.parts);

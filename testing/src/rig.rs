@@ -40,7 +40,7 @@ impl Rig {
     /// The same with a sine base acceleration from time 0: amplitude (m/s2) and frequency (Hz).
     pub fn shaken(model: Model, amplitude: f64, frequency: f64) -> Self {
         let generator = Generator::new(&shaken(amplitude, frequency));
-        Self::new(model.with(|parts| parts.generator = generator))
+        Self::new(model.with(|model| model.generator = generator))
     }
 
     /// Sets the initial modal velocities, in the order of the modes, and the dependent values.
@@ -55,19 +55,14 @@ impl Rig {
 
     /// Gives the whole spring a velocity, m/s.
     pub fn throw(&mut self, speed: f64) {
-        let velocities: Vec<f64> = self
-            .model
-            .modes()
-            .iter()
-            .map(|mode| speed * mode.participation)
-            .collect();
+        let velocities: Vec<f64> = self.model.modes.iter().map(|mode| speed * mode.participation).collect();
         self.launch(&velocities);
     }
 
     /// Allows a bonded contact to open from now on.
     pub fn unbond(&mut self) {
-        let model = self.model.clone().with(|parts| {
-            if let Law::Linear(linear) = &mut parts.law {
+        let model = self.model.clone().with(|model| {
+            if let Law::Linear(linear) = &mut model.law {
                 linear.bonded = false;
             }
         });
@@ -96,12 +91,12 @@ impl Rig {
     pub fn energy(&self) -> f64 {
         let Self { model, state, .. } = self;
         let modes: f64 = model
-            .modes()
+            .modes
             .iter()
             .zip(&state.modes)
             .map(|(mode, at)| 0.5 * (at.v * at.v + mode.omega_squared * at.q * at.q))
             .sum();
-        let contact = |d: f64| match *model.law() {
+        let contact = |d: f64| match model.law {
             Law::Power(power) => power.elastic_force(d) * d.max(0.0) / (power.exponent + 1.0),
             Law::Linear(Linear {
                 stiffness,
@@ -119,35 +114,35 @@ impl Rig {
             pusher_force,
             pusher_overlap,
             ..
-        } = model.preload();
+        } = model.preload;
         let deviation = state.contact().approach;
         let bent = modes + contact(indentation + deviation) - contact(indentation) - force * deviation;
-        if model.scene().effects.pusher == PusherKind::None {
+        if model.scene.effects.pusher == PusherKind::None {
             return bent;
         }
         // Between the spring and the pusher, prescribed ones of which do not move: what the modes do there.
         let moved: f64 = model
-            .modes()
+            .modes
             .iter()
             .zip(&state.modes)
             .map(|(mode, at)| mode.pusher * at.q)
             .sum();
-        let spring = |d: f64| 0.5 * model.scene().pusher.stiffness * d.max(0.0).powi(2);
+        let spring = |d: f64| 0.5 * model.scene.pusher.stiffness * d.max(0.0).powi(2);
         bent + spring(pusher_overlap + moved) - spring(pusher_overlap) - pusher_force * moved + self.magnetic()
     }
 
     /// Displacement of the armature since the preload, m.
     pub fn armature(&self, state: &State) -> f64 {
-        let pairs = self.model.modes().iter().zip(&state.modes);
+        let pairs = self.model.modes.iter().zip(&state.modes);
         pairs.map(|(mode, at)| mode.armature * at.q).sum()
     }
 
     /// Energy of the armature's stops and of its magnet, whose current is held, above their tangents at the preload, J.
     fn magnetic(&self) -> f64 {
-        if self.model.scene().effects.pusher != PusherKind::Armature {
+        if self.model.scene.effects.pusher != PusherKind::Armature {
             return 0.0;
         }
-        let (given, rest) = (&self.model.scene().armature, self.model.preload().armature);
+        let (given, rest) = (&self.model.scene.armature, self.model.preload.armature);
         let potential = |place: f64| {
             let gap = given.core_position - place;
             let overlaps = [-gap, given.rest_position - place];
@@ -175,14 +170,14 @@ pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: 
     scene.solver.tolerance = tolerance;
     // A mass carries no current.
     scene.effects.chatter = false;
-    Model::new(&scene, 0.0).expect("the specimen").with(|parts| {
-        parts.preload = Preload {
+    Model::new(&scene, 0.0).expect("the specimen").with(|model| {
+        model.preload = Preload {
             indentation: -gap,
             ..Preload::default()
         };
-        parts.modes = modes.to_vec();
-        parts.law = law;
-        parts.force_scale = force_scale;
+        model.modes = modes.to_vec();
+        model.law = law;
+        model.force_scale = force_scale;
     })
 }
 

@@ -42,10 +42,10 @@ fn from_rest(omega_squared: f64, damping: f64, t: f64) -> (f64, f64) {
 
 /// The force above the preload force, by the closed form.
 fn force(model: &Model, t: f64) -> f64 {
-    let preload = &model.preload();
-    let beta = model.law().damping();
-    Space::new(model.modes().len())
-        .modes(&model.section(), preload.axial_force, preload.contact_stiffness)
+    let preload = &model.preload;
+    let beta = model.law.damping();
+    Space::new(model.modes.len())
+        .modes(&model.section, preload.axial_force, preload.contact_stiffness)
         .unwrap()
         .iter()
         .map(|mode| {
@@ -80,8 +80,8 @@ fn exact_steps_of_a_bonded_contact_are_right_to_1e_12() {
             let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
             for k in 1..=50 {
                 rig.run_to(&Inputs::default(), f64::from(k) * size).unwrap();
-                let exact = rig.model.preload().force + force(&rig.model, rig.state.time);
-                let error = (rig.state.contact().force - exact).abs() / rig.model.force_scale();
+                let exact = rig.model.preload.force + force(&rig.model, rig.state.time);
+                let error = (rig.state.contact().force - exact).abs() / rig.model.force_scale;
                 assert!(error < 1e-12, "{size} s, step {k}: {error:e}");
             }
             let fewer = !single && size < 1e-3;
@@ -101,7 +101,7 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                 let mut scene = scene(law);
                 scene.solver.tolerance = tolerance;
                 let mut inside = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-                let allowed = tolerance * inside.model().force_scale();
+                let allowed = tolerance * inside.model().force_scale;
                 let stiffness = inside.real(RealOutput::PreloadContactStiffness);
                 scene.solver.maximum_step = 1.001 * size;
                 let mut single = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
@@ -125,7 +125,7 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                     }
                     if k % 37 == 0 {
                         restored = Simulation::resume(
-                            inside.model().scene(),
+                            &inside.model().scene,
                             &relay_contact::reference::Initial::default(),
                             inside.motion(),
                         )
@@ -180,17 +180,17 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
     let length = 3e-6;
     let mut rig = Rig::new(Model::new(scene, 0.0).unwrap());
     let model = rig.model.clone();
-    let Law::Linear(contact) = model.law() else { panic!() };
+    let Law::Linear(contact) = &model.law else { panic!() };
     let (k, beta_c) = (contact.stiffness, contact.damping);
-    let (n, omega) = (model.modes().len(), TAU * scene.excitation.frequency);
+    let (n, omega) = (model.modes.len(), TAU * scene.excitation.frequency);
     // q_i w, v_i, then u, u', acceleration of the input, sine, cosine, jerk: w makes displacements as large as velocities.
-    let w = model.modes().last().unwrap().omega_squared.sqrt();
+    let w = model.modes.last().unwrap().omega_squared.sqrt();
     let mut matrix = DMatrix::zeros(2 * n + 6, 2 * n + 6);
-    for (i, mode) in model.modes().iter().enumerate() {
+    for (i, mode) in model.modes.iter().enumerate() {
         matrix[(i, n + i)] = w;
         matrix[(n + i, i)] = -mode.omega_squared / w;
         matrix[(n + i, n + i)] = -mode.damping;
-        for (j, other) in model.modes().iter().enumerate() {
+        for (j, other) in model.modes.iter().enumerate() {
             matrix[(n + i, j)] -= k * mode.tip * other.tip / w;
             matrix[(n + i, n + j)] -= k * beta_c * mode.tip * other.tip;
         }
@@ -232,14 +232,14 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
         rig.run_to(&inputs, f64::from(count + 1) * length).unwrap();
 
         let mut force = k * (support + beta_c * rate);
-        for (i, mode) in model.modes().iter().enumerate() {
+        for (i, mode) in model.modes.iter().enumerate() {
             let parts = [motion[i] / w, beta_c * motion[n + i]].map(|part| k * mode.tip * part);
             force -= parts[0] + parts[1];
         }
-        worst = worst.max((rig.state.contact().force - model.preload().force - force).abs());
+        worst = worst.max((rig.state.contact().force - model.preload.force - force).abs());
     }
     assert_eq!(rig.state.steps, 40);
-    worst / model.force_scale()
+    worst / model.force_scale
 }
 
 #[test]
@@ -256,7 +256,7 @@ fn every_damping_and_load_against_the_matrix_exponential() {
             scene.tip.mass = mass;
             stiffen(&mut scene, factor);
             // At the resonance, which without damping has no steady motion.
-            scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency();
+            scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency;
             let worst = error_against_the_exponential(&scene);
             assert!(worst < 1e-12, "{damping:?} {modes} {factor} {mass}: {worst:e}");
         }
@@ -267,8 +267,8 @@ fn every_damping_and_load_against_the_matrix_exponential() {
 #[test]
 fn exact_steps_hold_through_critical_damping() {
     let model = Model::new(&damped(ContactLawKind::Bonded, 1, (0.0, 0.0, 0.0)), 0.0).unwrap();
-    let mode = model.modes()[0];
-    let contact = model.preload().contact_stiffness * mode.tip * mode.tip;
+    let mode = model.modes[0];
+    let contact = model.preload.contact_stiffness * mode.tip * mode.tip;
     let critical = 2.0 * (mode.omega_squared + contact).sqrt();
     for off in [
         0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-5, -1e-5, 1e-4, 1e-3, 1e-2, -1e-2,
@@ -310,7 +310,7 @@ fn one_long_step_is_many_short_ones() {
                         .unwrap();
                 }
                 worst =
-                    worst.max((one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale());
+                    worst.max((one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale);
             }
             assert_eq!(
                 (one.state.steps, many.state.steps),
@@ -352,7 +352,7 @@ fn linearised_that_opens_is_left_to_the_collocation() {
     scene.excitation.amplitude = 400.0;
     let mut mixed = Rig::new(Model::new(&scene, 0.0).unwrap());
     let mut plain = Rig::new(mixed.model.clone().with(|_| ()));
-    let allowed = 2.0 * scene.solver.effective_tolerance() * mixed.model.force_scale();
+    let allowed = 2.0 * scene.solver.effective_tolerance() * mixed.model.force_scale;
     for k in 1..=100 {
         for rig in [&mut mixed, &mut plain] {
             rig.run_to(&Inputs::default(), f64::from(k) * 2e-5).unwrap();
@@ -374,7 +374,7 @@ fn the_generator_starts_inside_a_step() {
     scene.excitation.start_time = 1e-4;
     let mut rig = Rig::new(Model::new(&scene, 0.0).unwrap());
     rig.run_to(&Inputs::default(), 2.5e-4).unwrap();
-    let exact = rig.model.preload().force + force(&rig.model, 1.5e-4);
+    let exact = rig.model.preload.force + force(&rig.model, 1.5e-4);
     assert_eq!(rig.state.steps, 1);
-    assert!((rig.state.contact().force - exact).abs() < 1e-12 * rig.model.force_scale());
+    assert!((rig.state.contact().force - exact).abs() < 1e-12 * rig.model.force_scale);
 }

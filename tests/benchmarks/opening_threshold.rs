@@ -57,7 +57,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
             // Up to here the contact is held; now it may open.
             rig.unbond();
             let (mut at, start) = (rig.state.time, rig.state.time);
-            while rig.state.contact().force <= rig.model.preload().force {
+            while rig.state.contact().force <= rig.model.preload.force {
                 at += 1e-5;
                 rig.run_to(&Inputs::default(), at).unwrap();
                 assert!(at < start + 2.0 / frequency);
@@ -78,7 +78,7 @@ fn the_nonlinear_force_leaves_the_linear_one_quadratically() {
     let frequency = 1000.0;
     let hertz = model(ContactLawKind::Hertz, 1e-10, frequency);
     let response = reference::response(&hertz, TAU * frequency).force.norm();
-    let preload = hertz.preload().force;
+    let preload = hertz.preload.force;
     let deviation = |ratio: f64| {
         let mut rig = periodic(hertz.clone(), ratio * preload / response, frequency);
         let nonlinear = 1.0 - least_force(&mut rig, frequency) / preload;

@@ -108,13 +108,13 @@ fn a_small_vibration_gives_the_linear_response() {
     });
     let force = |time: f64| {
         let turned = responses.map(|(omega, force)| (force * Complex::new(0.0, omega * time).exp()).re);
-        model.preload().force + amplitude * (turned[0] + turned[1])
+        model.preload.force + amplitude * (turned[0] + turned[1])
     };
     let scale = amplitude * responses[0].1.norm().max(responses[1].1.norm()) * 2.0;
     // What rings from the start has gone after 10 ms: the damping of the first mode is some 3000 1/s. The law of the
     // contact departs from its tangent by about the amplitude over the preload, here 0.2 %. An acceleration held over
     // the steps would come half a step late, 0.6 % of the amplitude.
-    assert!(scale < 2e-3 * model.preload().force);
+    assert!(scale < 2e-3 * model.preload.force);
     let worst = rows[5000..]
         .iter()
         .map(|row| (row[2] - force(row[0])).abs())

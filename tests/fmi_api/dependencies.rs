@@ -175,7 +175,7 @@ impl Known {
                     // Where it touches without force.
                     known.inputs.pusher_displacement = -1e-3;
                     let simulation = Simulation::new(&known.scene, &known.inputs, 0.0).unwrap();
-                    -1e-3 - simulation.model().preload().pusher_overlap
+                    -1e-3 - simulation.model().preload.pusher_overlap
                 }
                 _ => value,
             };

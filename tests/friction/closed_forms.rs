@@ -156,9 +156,9 @@ fn what_sticks_is_a_rotational_spring() {
         ) = (0.0, 1.0, height);
         (scene.solver.tolerance, scene.solver.modes) = (1e-9, 40);
         let model = Model::new(&scene, 0.0).unwrap();
-        let normal = model.preload().contact_stiffness;
+        let normal = model.preload.contact_stiffness;
         let tangential = normal * stiffness_ratio(&scene.contact);
-        let modes = model.modes();
+        let modes = &model.modes;
         let count = modes.len();
         let vector = |of: &dyn Fn(usize) -> f64| DVector::from_fn(count, |k, _| of(k));
         let tips = vector(&|k| modes[k].tip);
@@ -169,7 +169,7 @@ fn what_sticks_is_a_rotational_spring() {
         let eigen = stiffness.symmetric_eigen();
         let lowest = eigen.eigenvalues.imin();
         let omega = eigen.eigenvalues[lowest].sqrt();
-        let section = model.section();
+        let section = model.section;
         let spring = Stretch {
             mass: section.tip_mass,
             support: normal,
@@ -181,14 +181,14 @@ fn what_sticks_is_a_rotational_spring() {
 
         // Swung in this shape, so little that the law is linear.
         let shape = eigen.eigenvectors.column(lowest).into_owned();
-        let swing = 1e-4 * model.preload().force;
+        let swing = 1e-4 * model.preload.force;
         let factor = -swing / (normal * tips.dot(&shape));
         let mut state = model.initial_state(0.0);
         for (at, part) in state.modes.iter_mut().zip(shape.iter()) {
             at.q = factor * part;
         }
         model.settle(&mut state);
-        let force = model.preload().force;
+        let force = model.preload.force;
         let mut simulation = Simulation::from_state(model, &state);
         let period = TAU / omega;
         for quarter in 0..41_u32 {

@@ -96,7 +96,7 @@ fn the_growth_told_is_that_of_two_modes_in_closed_form() {
     assert!((growth / expected.re - 1.0).abs() < 1e-8);
     assert!((frequency * TAU / expected.im.abs() - 1.0).abs() < 1e-8);
     // Nearest to the preload.
-    assert!((force / model.preload().force - 1.0).abs() < 1e-12);
+    assert!((force / model.preload.force - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn slip_that_is_stable_is_not_told() {
     // Apart by more than the contact couples them.
     let weak = [2.0, -0.1];
     let model = Model::new(&squealing(weak), 0.0).unwrap();
-    let preload = model.preload().force;
+    let preload = model.preload.force;
     for share in [0.0625, 0.25, 1.0, 4.0, 16.0] {
         assert!(closed_form(STIFFNESS * (share * preload / FORCE).powf(EXPONENT), weak).re < 1e-6);
     }
@@ -120,14 +120,14 @@ fn a_small_motion_of_a_contact_that_slides_grows_as_told() {
     let mut scene = squealing(LOADS);
     scene.solver.tolerance = 1e-10;
     let model = Model::new(&scene, 0.0).unwrap();
-    let force = model.preload().force;
-    let expected = closed_form(model.preload().contact_stiffness, LOADS);
+    let force = model.preload.force;
+    let expected = closed_form(model.preload.contact_stiffness, LOADS);
     let mut state = model.initial_state(0.0);
     let [slide, first, ..] = &mut state.modes;
     let speed = 1e-2;
     slide.v = speed;
     // A part of 2e-6 of the indentation, in the time of a radian.
-    first.v = 2e-6 * model.preload().indentation * TAU * MODES[0].0 / MODES[0].1;
+    first.v = 2e-6 * model.preload.indentation * TAU * MODES[0].0 / MODES[0].1;
     model.settle(&mut state);
     let mut simulation = Simulation::from_state(model, &state);
     let step = 0.25 / MODES[0].0;

@@ -11,7 +11,7 @@ use super::changeover;
 
 /// Coefficients of both contacts, N/m^1.5.
 fn coefficients(scene: &Scene, model: &Model) -> [f64; 2] {
-    let Law::Power(hertz) = model.law() else { panic!() };
+    let Law::Power(hertz) = &model.law else { panic!() };
     let second = (scene.second.curvature_radius / scene.contact.curvature_radius).sqrt();
     [hertz.coefficient, hertz.coefficient * second]
 }
@@ -33,9 +33,9 @@ fn a_mass_between_two_stops() {
         let forces = [0, 1].map(|n| coefficients[n] * depths[n].powf(1.5));
         let durations = depths.map(|depth| 2.943_275_184_3 * depth / speed);
         let scale = forces[0].max(forces[1]);
-        let model = model.with(|parts| {
-            parts.modes = vec![oscillator(mass, 0.0)];
-            parts.force_scale = scale;
+        let model = model.with(|model| {
+            model.modes = vec![oscillator(mass, 0.0)];
+            model.force_scale = scale;
         });
         let mut rig = Rig::new(model);
         rig.launch(&[-speed * mass.sqrt()]);

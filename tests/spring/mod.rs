@@ -84,12 +84,12 @@ fn segments_of_the_uniform_section_are_the_uniform_spring() {
         for shares in [&[1.0][..], &[0.3, 0.7], &[0.2; 5]] {
             let scene = cut(&scene, shares);
             let model = Model::new(&scene, 0.0).unwrap();
-            assert_eq!(model.modes().len(), plain.modes().len());
+            assert_eq!(model.modes.len(), plain.modes.len());
             for (found, expected) in [
-                (model.preload().force, plain.preload().force),
-                (model.preload().indentation, plain.preload().indentation),
-                (model.frequency(), plain.frequency()),
-                (model.force_scale(), plain.force_scale()),
+                (model.preload.force, plain.preload.force),
+                (model.preload.indentation, plain.preload.indentation),
+                (model.frequency, plain.frequency),
+                (model.force_scale, plain.force_scale),
             ] {
                 close(format_args!("{axial:?} {shares:?}"), found, expected, 1e-10);
             }
@@ -181,9 +181,9 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
         free.effects.axial_force = AxialForceKind::None;
         let model = Model::new(&free, 0.0).unwrap();
         let mut closed = expected;
-        closed[3].support = model.preload().contact_stiffness;
+        closed[3].support = model.preload.contact_stiffness;
         let omega = frequencies(&closed, clamp, 20.0, 1)[0];
-        let frequency = TAU * model.frequency();
+        let frequency = TAU * model.frequency;
         assert!((frequency / omega - 1.0).abs() < 1e-9, "{frequency} {omega}");
         // Statics: M^2 / (E I), and the rotation of the clamp.
         let mut compliance = if clamp.is_finite() {
@@ -201,12 +201,12 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
         let found = spring.statics.tip_compliance(0.0);
         assert!((found / compliance - 1.0).abs() < 1e-12, "{found} {compliance}");
         let sum: f64 = model
-            .modes()
+            .modes
             .iter()
             .map(|mode| mode.tip.powi(2) / mode.omega_squared)
             .sum();
         assert!(
-            (sum / spring.statics.tip_compliance(model.preload().axial_force) - 1.0).abs() < 1e-9,
+            (sum / spring.statics.tip_compliance(model.preload.axial_force) - 1.0).abs() < 1e-9,
             "{sum} {found}"
         );
     }

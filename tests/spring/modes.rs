@@ -13,10 +13,10 @@ use super::{TAU, with};
 
 /// The modes of a model, and the static compliance of its spring.
 fn written(model: &Model) -> Modes {
-    let modes = model.modes().iter();
+    let modes = model.modes.iter();
     let modes = modes.map(|own| mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation));
     Modes {
-        compliance: 1.0 / model.section().tip_stiffness(),
+        compliance: 1.0 / model.section.tip_stiffness(),
         parallel_compliance: None,
         modes: modes.collect(),
     }
@@ -30,15 +30,15 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
         let given = with(scene.clone(), Shape::Modes(written(&plain)));
         let model = Model::new(&given, 0.0).unwrap();
         assert_eq!(
-            model.modes().len(),
-            plain.modes().len(),
+            model.modes.len(),
+            plain.modes.len(),
             "nothing is missing in the Ritz modes"
         );
         assert_eq!(model.remarks(), []);
         for (found, expected) in [
-            (model.preload().force, plain.preload().force),
-            (model.frequency(), plain.frequency()),
-            (model.force_scale(), plain.force_scale()),
+            (model.preload.force, plain.preload.force),
+            (model.frequency, plain.frequency),
+            (model.force_scale, plain.force_scale),
         ] {
             assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
         }
@@ -115,7 +115,7 @@ fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
         };
         let scene = with(scene.clone(), Shape::Modes(modes));
         let model = Model::new(&scene, 0.0).unwrap();
-        assert_eq!(model.modes().len(), count + 1);
+        assert_eq!(model.modes.len(), count + 1);
         assert!(matches!(model.remarks()[..], [Remark::FewModes { .. }]));
         largest_difference(&forces(&scene, 1e-4, 100), &expected) / swing
     };
@@ -138,10 +138,10 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     scene.contact.damping = 0.0;
     let scene = with(scene, of_modes(1.1 * held, [given]));
     let model = Model::new(&scene, 0.0).unwrap();
-    let series = 1.0 / (1.0 / model.preload().contact_stiffness + 0.1 * held);
+    let series = 1.0 / (1.0 / model.preload.contact_stiffness + 0.1 * held);
     let expected = (omega_squared + series * contact * contact / mass).sqrt() / TAU;
     // The residual mode is 1e4 times faster than the other: the square of that.
-    close("frequency, Hz", model.frequency(), expected, 1e-7);
+    close("frequency, Hz", model.frequency, expected, 1e-7);
     // Steady state by the same series: q = -g a / (omega_0^2 - omega^2 + k_s T^2 + i omega c), F = -k_s T q.
     let omega = TAU * 300.0;
     let (real, imaginary) = (
@@ -150,7 +150,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     );
     let amplitude = 20.0 * mass.sqrt() * series * contact / mass.sqrt() / real.hypot(imaginary);
     let late = &forces(&scene, 1e-4, 2000)[1000..];
-    let middle = model.preload().force;
+    let middle = model.preload.force;
     let found = late.iter().map(|force| (force - middle).abs()).fold(0.0, f64::max);
     // A hundred points a third of a period apart miss the crest by less than 1e-3.
     assert!((found / amplitude - 1.0).abs() < 2e-3, "{found} {amplitude}");
@@ -164,7 +164,9 @@ fn each_mode_may_have_its_own_damping() {
         mode.damping = (n > 0).then_some(0.03);
     }
     let model = Model::new(&with(scene.clone(), Shape::Modes(modes)), 0.0).unwrap();
-    let [first, second, ..] = model.modes() else { panic!() };
+    let [first, second, ..] = model.modes.as_slice() else {
+        panic!()
+    };
     let beta = scene.beam.stiffness_damping;
     assert_eq!(first.damping, beta * first.omega_squared);
     assert!((second.damping / (0.06 * second.omega_squared.sqrt()) - 1.0).abs() < 1e-12);

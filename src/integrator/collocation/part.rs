@@ -45,7 +45,7 @@ pub(crate) struct Whole<'a, const S: usize> {
 impl<const S: usize> Whole<'_, S> {
     /// The modes `at` seconds after the start.
     pub(crate) fn modes(&self, at: f64, ends: &mut ModeStates) {
-        if self.model.ports.len() == 1 && self.model.axial().is_none() {
+        if self.model.ports.len() == 1 && self.model.axial.is_none() {
             compiled_for!(self.model.simd, A => self.compute::<2, A>(at, ends));
         } else {
             compiled_for!(self.model.simd, A => self.compute::<MOST_LOADS, A>(at, ends));
@@ -86,7 +86,7 @@ impl<const S: usize> Whole<'_, S> {
             }
         }
         let of_ports = count;
-        if model.axial().is_some() {
+        if model.axial.is_some() {
             for i in 0..LANES {
                 parts[count + i][i] = 1.0;
             }
@@ -114,7 +114,7 @@ impl<const S: usize> Whole<'_, S> {
                     *parts = of_group(&port.shape);
                 }
             }
-            if model.axial().is_some() {
+            if model.axial.is_some() {
                 let own = self.axial.chunks(LANES).nth(group).unwrap_or_default();
                 for (i, polynomial) in polynomials[of_ports..count].iter_mut().enumerate() {
                     *polynomial = load_on::<S, A>(shapes, &rows, own.get(i).unwrap_or(&[0.0; S]));
@@ -199,7 +199,7 @@ pub(crate) fn shorten<const S: usize>(
         };
     }
     trial.accelerations = nodal(&trial.accelerations);
-    if model.axial().is_some() {
+    if model.axial.is_some() {
         for load in axial.iter_mut() {
             *load = nodal(load);
         }

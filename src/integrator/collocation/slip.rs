@@ -28,7 +28,7 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
         rates: [0.0; S],
     };
     let start = -state.links[rubbing].approach - state.slip.way;
-    let (true, Some(law)) = (state.links[CONTACT].closed, model.law().power()) else {
+    let (true, Some(law)) = (state.links[CONTACT].closed, model.law.power()) else {
         return;
     };
     let Some(sign) = state.slip.phase.sign() else {

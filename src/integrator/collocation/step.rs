@@ -92,7 +92,8 @@ impl<const S: usize> Step<'_, S> {
         self.guess::<A>(trial);
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
         let mut rounds = model
-            .axial()
+            .axial
+            .as_deref()
             .map(|feedback| Rounds::new((model, feedback, state), (step, collocation), free, axial));
         loop {
             let settled = match &mut rounds {

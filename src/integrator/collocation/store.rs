@@ -65,8 +65,8 @@ impl Basis {
         Self {
             modes: model.modes.clone(),
             ports: model.ports.clone(),
-            axial: model.axial().is_some(),
-            rubbing: model.friction().map(|_| model.law().damping()),
+            axial: model.axial.as_deref().is_some(),
+            rubbing: model.friction().map(|_| model.law.damping()),
             portable: matches!(model.simd, Simd::Portable),
         }
     }
@@ -134,7 +134,11 @@ impl Sizes {
         Self {
             rows,
             responses: responses_before(model.ports.len()),
-            columns: if model.axial().is_some() { model.modes.len() } else { 0 },
+            columns: if model.axial.as_deref().is_some() {
+                model.modes.len()
+            } else {
+                0
+            },
             following: if model.friction().is_some() { S } else { 0 },
             ends: model.modes.len().div_ceil(LANES),
             of_port,
@@ -305,7 +309,7 @@ impl<const S: usize> Store<S> {
             response.set(sum, simd, shapes, h);
         }
         if sizes.following > 0 {
-            let following = compiled_for!(simd, A => following::<S, A>(model.law().damping(), h, shapes));
+            let following = compiled_for!(simd, A => following::<S, A>(model.law.damping(), h, shapes));
             part_mut(&mut self.following, place, sizes.following).copy_from_slice(&following);
         }
     }

@@ -85,7 +85,7 @@ pub struct Scratch<const S: usize> {
 impl<const S: usize> Scratch<S> {
     /// For the model.
     pub fn new(model: &Model) -> Self {
-        let on_modes = || vec![[0.0; S]; if model.axial().is_some() { model.modes.len() } else { 0 }];
+        let on_modes = || vec![[0.0; S]; if model.axial.is_some() { model.modes.len() } else { 0 }];
         Self {
             free: Box::default(),
             joined: Joined::new(model),

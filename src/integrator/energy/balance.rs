@@ -127,7 +127,7 @@ fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
                 }
                 LinkLaw::Friction(friction) => {
                     let contact = model.links.get(CONTACT).zip(motion.links.get(CONTACT));
-                    let law = model.law().power();
+                    let law = model.law.power();
                     let (Some((contact, across)), Some(law), true) = (contact, law, state.links[CONTACT].closed) else {
                         continue;
                     };
@@ -256,7 +256,7 @@ mod tests {
             }
             let d = model.preload.indentation + d;
             slope[2 * MODES] += (model.preload.force + force) * drive.velocities[0];
-            slope[2 * MODES + 1] += (model.law().force(d, rate) - model.law().force(d, 0.0)) * rate;
+            slope[2 * MODES + 1] += (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
             slope
         };
         let mut y = Along::zeros();

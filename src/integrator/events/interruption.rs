@@ -1,7 +1,6 @@
 //! Event location of interruptions: where a contact force passes that of the threshold resistance within a step. The
 //! step goes on.
 
-use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::BRIEF;
@@ -26,39 +25,32 @@ impl<const S: usize> Locator<'_, S> {
     /// The force polynomial is monotone between the places where it turns, so that a dip of any length is found. Where it
     /// is not accurate, the law gives the force at the exact motion under it.
     fn add_passages(&mut self, index: usize, must: bool, passages: &mut Places) -> bool {
-        let Whole {
-            model,
-            state,
-            collocation,
-            trial,
-            length,
-            ..
-        } = self.whole;
+        let whole = self.whole;
         let Some((link, start)) = self.link(index).filter(|(_, start)| start.closed) else {
             return true;
         };
-        let (Some(criterion), Some(law), Some(nodes)) = (&link.criterion, link.contact(), trial.links.get(index))
+        let (Some(criterion), Some(law), Some(nodes)) = (&link.criterion, link.contact(), whole.trial.links.get(index))
         else {
             return true;
         };
-        let mut interrupted = state.circuits.is_interrupted(index);
+        let mut interrupted = whole.state.circuits.is_interrupted(index);
         let excess = |force: f64| link.force + force - criterion.force;
         let at_start = start.force - link.force;
         let ahead = |force: f64| if interrupted { -excess(force) } else { excess(force) };
         if !Collocation::comes_near_zero(ahead(at_start), &nodes.forces.map(ahead)) {
             return true;
         }
-        let polynomial = collocation.through(model.simd, at_start, &nodes.forces);
+        let polynomial = whole.collocation.through(whole.model.simd, at_start, &nodes.forces);
         let value = |y: f64| excess(value_at(&polynomial, y));
-        let turns = turning_points(model.simd, &polynomial);
+        let turns = turning_points(whole.model.simd, &polynomial);
         let inaccuracy = self.whole.inaccuracy();
         let is_accurate = inaccuracy <= 1.0;
-        if !is_accurate && collocation.variable == Variable::Root {
+        if !is_accurate && whole.collocation.variable == Variable::Root {
             return false;
         }
-        let is_brief =
-            length <= BRIEF * model.scene.solver.effective_tolerance() * model.scene.chatter.minimum_duration;
-        let unsure = inaccuracy * model.tolerance.force;
+        let is_brief = whole.length
+            <= BRIEF * whole.model.scene.solver.effective_tolerance() * whole.model.scene.chatter.minimum_duration;
+        let unsure = inaccuracy * whole.model.tolerance.force;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
             return false;
         }
@@ -81,12 +73,12 @@ impl<const S: usize> Locator<'_, S> {
                     }
                 } else {
                     let force = |d, rate| link.force_at(d, rate) - criterion.force;
-                    let from = ((1.0 + before.0) * length, before.1);
-                    let rounding = model.tolerance.at_event;
-                    let found = self.instant(index, force, from, (1.0 + y) * length, rounding);
-                    found.at / length - 1.0
+                    let from = ((1.0 + before.0) * whole.length, before.1);
+                    let rounding = whole.model.tolerance.at_event;
+                    let found = self.instant(index, force, from, (1.0 + y) * whole.length, rounding);
+                    found.at / whole.length - 1.0
                 };
-                let [part] = collocation.variable.times(&[1.0 + place.clamp(before.0, y)]);
+                let [part] = whole.collocation.variable.times(&[1.0 + place.clamp(before.0, y)]);
                 passages.push(part - 1.0);
                 interrupted = below;
             }

@@ -25,7 +25,7 @@ pub struct Events {
 
 impl Events {
     /// An empty log.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             list: Vec::with_capacity(EVENTS_KEPT),
             left_out: 0,
@@ -58,11 +58,5 @@ impl Events {
     /// Events up to an instant (s).
     pub fn until(&self, time: f64) -> impl Iterator<Item = &Event> {
         self.list.iter().filter(move |event| event.time <= time)
-    }
-}
-
-impl Default for Events {
-    fn default() -> Self {
-        Self::new()
     }
 }

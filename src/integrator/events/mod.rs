@@ -88,24 +88,20 @@ impl<'a, const S: usize> Locator<'a, S> {
         latest: f64,
         rounding: f64,
     ) -> Instant {
-        let Whole {
-            model,
-            collocation,
-            trial,
-            length,
-            ..
-        } = self.whole;
-        let Some((nodes, (_, start))) = trial.links.get(index).zip(self.link(index)) else {
+        let whole = self.whole;
+        let Some((nodes, (_, start))) = whole.trial.links.get(index).zip(self.link(index)) else {
             return self.inside(index, latest);
         };
-        let approach = collocation.through(model.simd, start.approach, &nodes.approaches);
-        let rate = collocation.through(model.simd, start.rate, &nodes.rates);
+        let approach = whole
+            .collocation
+            .through(whole.model.simd, start.approach, &nodes.approaches);
+        let rate = whole.collocation.through(whole.model.simd, start.rate, &nodes.rates);
         let on_polynomials = |at: f64| {
-            let y = at / length - 1.0;
+            let y = at / whole.length - 1.0;
             value(value_at(&approach, y), value_at(&rate, y))
         };
         let end = (latest, on_polynomials(latest));
-        let guess = roots::between(on_polynomials, from, end, 1e-12 * length);
+        let guess = roots::between(on_polynomials, from, end, 1e-12 * whole.length);
         let at = guess.unwrap_or(latest);
         let near = at - 1e-4 * (at - from.0);
         let slope = (on_polynomials(at) - on_polynomials(near)) / (at - near);

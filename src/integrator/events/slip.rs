@@ -62,35 +62,28 @@ impl<'a, const S: usize> Locator<'a, S> {
             friction,
             law,
         } = self.rubbing()?;
-        let Whole {
-            model,
-            state,
-            collocation,
-            trial,
-            length,
-            ..
-        } = self.whole;
-        let (normal, nodes) = trial.links.get(CONTACT).zip(trial.links.get(index))?;
-        let z = -along_at.approach - state.slip.way;
+        let whole = self.whole;
+        let (normal, nodes) = whole.trial.links.get(CONTACT).zip(whole.trial.links.get(index))?;
+        let z = -along_at.approach - whole.state.slip.way;
         let mut first = |start: f64, values: &[f64; S], phase: Phase| {
-            let exceeds = |y: f64, value: f64| self.is_beyond((1.0 + y) * length, value, phase);
-            passage((collocation, model.simd), start, values, exceeds)
+            let exceeds = |y: f64, value: f64| self.is_beyond((1.0 + y) * whole.length, value, phase);
+            passage((whole.collocation, whole.model.simd), start, values, exceeds)
         };
-        let ((y, slope), phase) = if let Some(sign) = state.slip.phase.sign() {
+        let ((y, slope), phase) = if let Some(sign) = whole.state.slip.phase.sign() {
             // The friction force that is missing for the slip velocity.
             let damping = law.damping;
-            let stiffness = friction.ratio * law.tangent_stiffness(law.indentation(model.force_scale));
-            let wrong = scaled(&trial.slip.rates, sign * stiffness * (damping + length));
+            let stiffness = friction.ratio * law.tangent_stiffness(law.indentation(whole.model.force_scale));
+            let wrong = scaled(&whole.trial.slip.rates, sign * stiffness * (damping + whole.length));
             let before = if damping > 0.0 {
                 // As a jump of the contact force has left it.
                 let across = (contact.approach + contact_at.approach, contact_at.rate);
                 let turned = friction.turned(law, sign, across, (z, -along_at.rate));
-                stiffness * (1.0 + length / damping) * turned
+                stiffness * (1.0 + whole.length / damping) * turned
             } else {
-                dot::<S, Separate>(&wrong, &collocation.at_start)
+                dot::<S, Separate>(&wrong, &whole.collocation.at_start)
             };
             let (y, slope) = first(before.min(0.0), &wrong, Phase::Stick)?;
-            ((y, slope * damping / (damping + length)), Phase::Stick)
+            ((y, slope * damping / (damping + whole.length)), Phase::Stick)
         } else {
             let [back, forth] = [1.0, -1.0].map(|sign| {
                 let phase = Phase::slip(sign);
@@ -107,11 +100,11 @@ impl<'a, const S: usize> Locator<'a, S> {
                 (None, forth) => forth?,
             }
         };
-        let at = (1.0 + y) * length;
+        let at = (1.0 + y) * whole.length;
         Some(Change {
             at: if at <= self.resolution { 0.0 } else { at },
             phase,
-            slope: slope / length,
+            slope: slope / whole.length,
         })
     }
 
@@ -167,23 +160,18 @@ impl<'a, const S: usize> Locator<'a, S> {
             friction,
             law,
         } = rubbing;
-        let Whole {
-            model,
-            state,
-            collocation,
-            trial,
-            length,
-            ..
-        } = self.whole;
+        let whole = self.whole;
         let along = self.whole.link(index, end.at, &self.search.modes);
         let d = contact.approach + end.d;
-        if let Some(sign) = state.slip.phase.sign() {
-            let start = -along_at.approach - state.slip.way;
-            let course = collocation.through(model.simd, start, &trial.slip.deflections);
-            let z = value_at(&course, end.at / length - 1.0);
+        if let Some(sign) = whole.state.slip.phase.sign() {
+            let start = -along_at.approach - whole.state.slip.way;
+            let course = whole
+                .collocation
+                .through(whole.model.simd, start, &whole.trial.slip.deflections);
+            let z = value_at(&course, end.at / whole.length - 1.0);
             friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
         } else {
-            let stick = friction.trial(law, d, -along.d - state.slip.way, -along.rate);
+            let stick = friction.trial(law, d, -along.d - whole.state.slip.way, -along.rate);
             let limit = friction.coefficient * law.closed_branch(d, end.rate).force;
             phase.sign().unwrap_or_default() * stick.force - limit
         }
