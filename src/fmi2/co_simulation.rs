@@ -24,10 +24,13 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     order: *const fmi2Integer,
     value: *const fmi2Real,
 ) -> fmi2Status {
-    call(c, states::SET_REAL_INPUT_DERIVATIVES, |instance| {
-        let (references, orders) = (array(vr, nvr, "vr")?, array(order, nvr, "order")?);
-        instance.set_input_derivatives(references, orders, array(value, nvr, "value")?)
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::SET_REAL_INPUT_DERIVATIVES, |instance| {
+            let (references, orders) = (array(vr, nvr, "vr")?, array(order, nvr, "order")?);
+            instance.set_input_derivatives(references, orders, array(value, nvr, "value")?)
+        })
+    }
 }
 
 /// Reads first derivatives of outputs at the communication point, as limits from the left; 0 before the first step, and
@@ -40,14 +43,17 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     order: *const fmi2Integer,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    call(c, states::GET_REAL_OUTPUT_DERIVATIVES, |instance| {
-        let (references, orders) = (array(vr, nvr, "vr")?, array(order, nvr, "order")?);
-        let values = array_mut(value, nvr, "value")?;
-        for ((&reference, &order), value) in references.iter().zip(orders).zip(values) {
-            value.write(instance.output_derivative(reference, order)?);
-        }
-        Ok(())
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::GET_REAL_OUTPUT_DERIVATIVES, |instance| {
+            let (references, orders) = (array(vr, nvr, "vr")?, array(order, nvr, "order")?);
+            let values = array_mut(value, nvr, "value")?;
+            for ((&reference, &order), value) in references.iter().zip(orders).zip(values) {
+                value.write(instance.output_derivative(reference, order)?);
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Advances to the end of one communication step. `currentCommunicationPoint` must equal the time of the instance up to
@@ -67,7 +73,8 @@ pub unsafe extern "C" fn fmi2DoStep(
         finished = instance.step_finished;
         instance.step(currentCommunicationPoint, communicationStepSize)
     };
-    let status = call(c, states::DO_STEP, body);
+    // SAFETY: the contract of the module.
+    let status = unsafe { call(c, states::DO_STEP, body) };
     if let (Some(callback), environment) = finished
         && status == fmi2OK
     {
@@ -80,10 +87,14 @@ pub unsafe extern "C" fn fmi2DoStep(
 /// Always an error: a step is complete when `fmi2DoStep` returns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
-    call(c, states::CANCEL_STEP, |_| Ok(()))
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::CANCEL_STEP, |_| Ok(())) }
 }
 
 /// Returns a status value, or `fmi2Discard` if there is none.
+///
+/// # Safety
+/// The contract of the module.
 unsafe fn status<T>(
     c: fmi2Component,
     function: Function,
@@ -91,24 +102,29 @@ unsafe fn status<T>(
     value: *mut T,
     answer: impl Fn(&Instance) -> Option<T>,
 ) -> fmi2Status {
-    call(c, function, |instance| {
-        let place = place(value, "value")?;
-        place.write(answer(instance).ok_or(Failure::StatusKind(kind))?);
-        Ok(())
-    })
+    // SAFETY: passed on to the caller.
+    unsafe {
+        call(c, function, |instance| {
+            let place = place(value, "value")?;
+            place.write(answer(instance).ok_or(Failure::StatusKind(kind))?);
+            Ok(())
+        })
+    }
 }
 
 /// Always `fmi2Discard`: no step is ever pending.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Status) -> fmi2Status {
-    status(c, states::GET_STATUS, s, value, |_| None)
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_STATUS, s, value, |_| None) }
 }
 
 /// The last successful time, also after a failed step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(c: fmi2Component, s: fmi2StatusKind, value: *mut fmi2Real) -> fmi2Status {
     let answer = |instance: &Instance| (s == fmi2LastSuccessfulTime).then_some(instance.time);
-    status(c, states::GET_REAL_STATUS, s, value, answer)
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_REAL_STATUS, s, value, answer) }
 }
 
 /// Always `fmi2Discard`: the standard has no such status.
@@ -118,7 +134,8 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus(
     s: fmi2StatusKind,
     value: *mut fmi2Integer,
 ) -> fmi2Status {
-    status(c, states::GET_INTEGER_STATUS, s, value, |_| None)
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_INTEGER_STATUS, s, value, |_| None) }
 }
 
 /// Whether the component asks to terminate: always false.
@@ -129,7 +146,8 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
     let answer = |_: &Instance| (s == fmi2Terminated).then_some(fmi2False);
-    status(c, states::GET_BOOLEAN_STATUS, s, value, answer)
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_BOOLEAN_STATUS, s, value, answer) }
 }
 
 /// Always `fmi2Discard`: no step is ever pending.
@@ -139,5 +157,6 @@ pub unsafe extern "C" fn fmi2GetStringStatus(
     s: fmi2StatusKind,
     value: *mut fmi2String,
 ) -> fmi2Status {
-    status(c, states::GET_STRING_STATUS, s, value, |_| None)
+    // SAFETY: the contract of the module.
+    unsafe { status(c, states::GET_STRING_STATUS, s, value, |_| None) }
 }

@@ -46,11 +46,14 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     nCategories: size_t,
     categories: *const fmi2String,
 ) -> fmi2Status {
-    call(c, states::SET_DEBUG_LOGGING, |instance| {
-        let categories = array(categories, nCategories, "categories")?.iter();
-        let categories = categories.map(|category| text(*category, "categories"));
-        instance.choose_logging(loggingOn != fmi2False, &categories.collect::<Result<Vec<_>, _>>()?)
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::SET_DEBUG_LOGGING, |instance| {
+            let categories = array(categories, nCategories, "categories")?.iter();
+            let categories = categories.map(|category| text(*category, "categories"));
+            instance.choose_logging(loggingOn != fmi2False, &categories.collect::<Result<Vec<_>, _>>()?)
+        })
+    }
 }
 
 /// Creates an instance. Returns null if the name is missing, the type is not co-simulation, or the GUID belongs to
@@ -67,11 +70,18 @@ pub unsafe extern "C" fn fmi2Instantiate(
     visible: fmi2Boolean,
     loggingOn: fmi2Boolean,
 ) -> fmi2Component {
-    let Ok([functions]) = array(functions, 1, "functions") else {
+    // SAFETY: the contract of the module.
+    let Ok([functions]) = (unsafe { array(functions, 1, "functions") }) else {
         return ptr::null_mut();
     };
-    let (name, guid) = (text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID"));
-    let resources = text(fmuResourceLocation, "fmuResourceLocation");
+    // SAFETY: the contract of the module.
+    let [name, guid, resources] = unsafe {
+        [
+            text(instanceName, "instanceName"),
+            text(fmuGUID, "fmuGUID"),
+            text(fmuResourceLocation, "fmuResourceLocation"),
+        ]
+    };
     let resources = resources.ok().and_then(|text| resources::folder(text.to_str().ok()?));
     let name = name.ok().filter(|name| !name.is_empty());
     let logger = |on| Logger::new(functions, name.unwrap_or(c"RelayContact"), on);
@@ -121,7 +131,8 @@ fn identity(
 /// Frees an instance. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
-    take_back(c);
+    // SAFETY: the contract of the module.
+    unsafe { take_back(c) }
 }
 
 /// Sets tolerance, start and stop time; without a call the start time is zero and there is no stop time.
@@ -139,7 +150,8 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
     let tolerance = (toleranceDefined != fmi2False).then_some(tolerance);
     let stop = (stopTimeDefined != fmi2False).then_some(stopTime);
     let body = |instance: &mut Instance| instance.setup_experiment(tolerance, startTime, stop);
-    call(c, states::SETUP_EXPERIMENT, body)
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::SETUP_EXPERIMENT, body) }
 }
 
 /// Enters Initialization Mode, in which outputs can be read for the parameters set so far.
@@ -149,13 +161,15 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2St
         instance.state = State::InitializationMode;
         Ok(())
     };
-    call(c, states::ENTER_INITIALIZATION_MODE, body)
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::ENTER_INITIALIZATION_MODE, body) }
 }
 
 /// Ends Initialization Mode: the contact is at rest in its preload. An error if the parameters are inconsistent.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
-    call(c, states::EXIT_INITIALIZATION_MODE, Instance::exit_initialization_mode)
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::EXIT_INITIALIZATION_MODE, Instance::exit_initialization_mode) }
 }
 
 /// Ends the simulation. Values can still be read.
@@ -165,7 +179,8 @@ pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
         instance.state = State::Terminated;
         Ok(())
     };
-    call(c, states::TERMINATE, body)
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::TERMINATE, body) }
 }
 
 /// Restores the start values and the state after `fmi2Instantiate`.
@@ -175,5 +190,6 @@ pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
         instance.reset();
         Ok(())
     };
-    call(c, states::RESET, body)
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::RESET, body) }
 }

@@ -32,17 +32,20 @@ pub unsafe extern "C" fn relayContactFollow(
     values: *mut fmi2Real,
 ) -> fmi2Status {
     let size = |rows: size_t, columns: size_t, name| rows.checked_mul(columns).ok_or(Failure::Pointer(name));
-    call(c, states::DO_STEP, |instance| {
-        let given = size(nTimes, nInputs, "courses")?;
-        let taken = size(nTimes.saturating_sub(1), nOutputs, "values")?;
-        let times = array(times, nTimes, "times")?;
-        let (inputs, courses) = (array(inputs, nInputs, "inputs")?, array(courses, given, "courses")?);
-        let (outputs, values) = (
-            array(outputs, nOutputs, "outputs")?,
-            array_mut(values, taken, "values")?,
-        );
-        follow(instance, times, (inputs, courses), (outputs, values))
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::DO_STEP, |instance| {
+            let given = size(nTimes, nInputs, "courses")?;
+            let taken = size(nTimes.saturating_sub(1), nOutputs, "values")?;
+            let times = array(times, nTimes, "times")?;
+            let (inputs, courses) = (array(inputs, nInputs, "inputs")?, array(courses, given, "courses")?);
+            let (outputs, values) = (
+                array(outputs, nOutputs, "outputs")?,
+                array_mut(values, taken, "values")?,
+            );
+            follow(instance, times, (inputs, courses), (outputs, values))
+        })
+    }
 }
 
 /// Does the steps; inputs and outputs come with their rows.

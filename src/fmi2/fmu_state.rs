@@ -31,12 +31,13 @@ fn check_memory() -> Result<(), Failure> {
 /// # Safety
 /// Unless null, `FMUstate` leads to null or to a saved state.
 unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: Snapshot) -> Result<(), Failure> {
-    // The standard has the importer set it to null or to a saved state.
-    let state = place(FMUstate, "FMUstate")?.assume_init_mut();
+    // SAFETY: passed on to the caller; the standard has the importer set it to null or to a saved state.
+    let state = unsafe { place(FMUstate, "FMUstate")?.assume_init_mut() };
     if state.is_null() {
         *state = instance.saved_states.hand_out(snapshot);
     } else {
-        saved(*state)?.snapshot = snapshot;
+        // SAFETY: passed on to the caller.
+        unsafe { saved(*state) }?.snapshot = snapshot;
     }
     Ok(())
 }
@@ -44,32 +45,41 @@ unsafe fn keep(instance: &mut Instance, FMUstate: *mut fmi2FMUstate, snapshot: S
 /// Saves the instance, in the state that `FMUstate` points to or, if that is null, in a new one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    call(c, states::GET_FMU_STATE, |instance| {
-        check_memory()?;
-        keep(instance, FMUstate, instance.snapshot())
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::GET_FMU_STATE, |instance| {
+            check_memory()?;
+            keep(instance, FMUstate, instance.snapshot())
+        })
+    }
 }
 
 /// Restores a saved state of the instance, which can be used again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
-    call(c, states::SET_FMU_STATE, |instance| {
-        instance.restore(&saved(FMUstate)?.snapshot)
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::SET_FMU_STATE, |instance| {
+            instance.restore(&saved(FMUstate)?.snapshot)
+        })
+    }
 }
 
 /// Frees a saved state and sets the pointer to null. Null is ignored. Those left are freed with their instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(c: fmi2Component, FMUstate: *mut fmi2FMUstate) -> fmi2Status {
-    call(c, states::FREE_FMU_STATE, |instance| {
-        if let Ok([state]) = array(FMUstate, 1, "FMUstate")
-            && !state.is_null()
-        {
-            instance.saved_states.free(*state)?;
-            FMUstate.write(ptr::null_mut());
-        }
-        Ok(())
-    })
+    // SAFETY: the contract of the module: null or initialised, and the importer's to write to.
+    unsafe {
+        call(c, states::FREE_FMU_STATE, |instance| {
+            if let Ok([state]) = array(FMUstate, 1, "FMUstate")
+                && !state.is_null()
+            {
+                instance.saved_states.free(*state)?;
+                FMUstate.write(ptr::null_mut());
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Size of the serialized state in bytes.
@@ -79,11 +89,14 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     FMUstate: fmi2FMUstate,
     size: *mut size_t,
 ) -> fmi2Status {
-    call(c, states::SERIALIZED_FMU_STATE_SIZE, |_| {
-        let (saved, size) = (saved(FMUstate)?, place(size, "size")?);
-        size.write(serial::to_bytes(&saved.snapshot)?.len());
-        Ok(())
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::SERIALIZED_FMU_STATE_SIZE, |_| {
+            let (saved, size) = (saved(FMUstate)?, place(size, "size")?);
+            size.write(serial::to_bytes(&saved.snapshot)?.len());
+            Ok(())
+        })
+    }
 }
 
 /// Serializes the saved state to `serializedState`, whose size must be that of `fmi2SerializedFMUstateSize`.
@@ -94,18 +107,21 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     serializedState: *mut fmi2Byte,
     size: size_t,
 ) -> fmi2Status {
-    call(c, states::SERIALIZE_FMU_STATE, |_| {
-        let (saved, room) = (saved(FMUstate)?, array_mut(serializedState, size, "serializedState")?);
-        let bytes = serial::to_bytes(&saved.snapshot)?;
-        let needed = bytes.len();
-        if needed != size {
-            return Err(Failure::Size { size, needed });
-        }
-        for (place, byte) in room.iter_mut().zip(bytes) {
-            place.write(fmi2Byte::from_ne_bytes([byte]));
-        }
-        Ok(())
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::SERIALIZE_FMU_STATE, |_| {
+            let (saved, room) = (saved(FMUstate)?, array_mut(serializedState, size, "serializedState")?);
+            let bytes = serial::to_bytes(&saved.snapshot)?;
+            let needed = bytes.len();
+            if needed != size {
+                return Err(Failure::Size { size, needed });
+            }
+            for (place, byte) in room.iter_mut().zip(bytes) {
+                place.write(fmi2Byte::from_ne_bytes([byte]));
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Restores a saved state from bytes, in the state that `FMUstate` points to or, if that is null, in a new one.
@@ -116,11 +132,14 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     size: size_t,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    call(c, states::DE_SERIALIZE_FMU_STATE, |instance| {
-        let bytes = array(serializedState, size, "serializedState")?;
-        check_memory()?;
-        keep(instance, FMUstate, serial::from_bytes(bytemuck::cast_slice(bytes))?)
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        call(c, states::DE_SERIALIZE_FMU_STATE, |instance| {
+            let bytes = array(serializedState, size, "serializedState")?;
+            check_memory()?;
+            keep(instance, FMUstate, serial::from_bytes(bytemuck::cast_slice(bytes))?)
+        })
+    }
 }
 
 /// Not supported: an error that does not change the instance. In co-simulation these are the derivatives of outputs
@@ -137,5 +156,6 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
     let body = |_: &mut Instance| Err(Failure::Unsupported("providesDirectionalDerivative"));
-    call(c, states::GET_DIRECTIONAL_DERIVATIVE, body)
+    // SAFETY: the contract of the module.
+    unsafe { call(c, states::GET_DIRECTIONAL_DERIVATIVE, body) }
 }

@@ -13,17 +13,12 @@
     clippy::missing_safety_doc
 )]
 
-// Where it is expected, functions are unsafe as a whole: on the contract relies all that they do with pointers.
-#[expect(unsafe_op_in_unsafe_fn)]
 mod co_simulation;
-#[expect(unsafe_op_in_unsafe_fn)]
 mod common;
-#[expect(unsafe_op_in_unsafe_fn)]
 mod course;
 mod entry;
 mod environment;
 mod failure;
-#[expect(unsafe_op_in_unsafe_fn)]
 mod fmu_state;
 mod instance;
 mod logger;
@@ -33,7 +28,6 @@ mod saved;
 mod serial;
 pub mod states;
 mod types;
-#[expect(unsafe_op_in_unsafe_fn)]
 mod values;
 
 pub use co_simulation::*;

@@ -14,6 +14,9 @@ use super::types::{
 };
 
 /// Reads one value for each reference.
+///
+/// # Safety
+/// The contract of the module.
 unsafe fn get<T>(
     c: fmi2Component,
     function: Function,
@@ -22,16 +25,22 @@ unsafe fn get<T>(
     value: *mut T,
     read: impl Fn(&mut Instance, u32) -> Result<T, Failure>,
 ) -> fmi2Status {
-    call(c, function, |instance| {
-        let (references, values) = (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?);
-        for (&reference, value) in references.iter().zip(values) {
-            value.write(read(instance, reference)?);
-        }
-        Ok(())
-    })
+    // SAFETY: passed on to the caller.
+    unsafe {
+        call(c, function, |instance| {
+            let (references, values) = (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?);
+            for (&reference, value) in references.iter().zip(values) {
+                value.write(read(instance, reference)?);
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Sets the values of the references, all or none.
+///
+/// # Safety
+/// The contract of the module.
 unsafe fn set<'a, T: Copy>(
     c: fmi2Component,
     function: Function,
@@ -40,10 +49,13 @@ unsafe fn set<'a, T: Copy>(
     value: *const T,
     read: impl Fn(T) -> Result<Value<'a>, Failure>,
 ) -> fmi2Status {
-    call(c, function, |instance| {
-        let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
-        instance.set(references, values.iter().map(|value| read(*value)))
-    })
+    // SAFETY: passed on to the caller.
+    unsafe {
+        call(c, function, |instance| {
+            let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
+            instance.set(references, values.iter().map(|value| read(*value)))
+        })
+    }
 }
 
 /// Reads real variables.
@@ -54,7 +66,8 @@ pub unsafe extern "C" fn fmi2GetReal(
     nvr: size_t,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    get(c, states::GET_REAL, vr, nvr, value, Instance::real)
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_REAL, vr, nvr, value, Instance::real) }
 }
 
 /// Reads integer and enumeration variables.
@@ -65,7 +78,8 @@ pub unsafe extern "C" fn fmi2GetInteger(
     nvr: size_t,
     value: *mut fmi2Integer,
 ) -> fmi2Status {
-    get(c, states::GET_INTEGER, vr, nvr, value, Instance::integer)
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_INTEGER, vr, nvr, value, Instance::integer) }
 }
 
 /// Reads Boolean variables.
@@ -80,7 +94,8 @@ pub unsafe extern "C" fn fmi2GetBoolean(
         let value = instance.boolean(reference)?;
         Ok(if value { fmi2True } else { fmi2False })
     };
-    get(c, states::GET_BOOLEAN, vr, nvr, value, read)
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
 }
 
 /// Reads string variables. The strings stay until this function is called for another value.
@@ -92,7 +107,8 @@ pub unsafe extern "C" fn fmi2GetString(
     value: *mut fmi2String,
 ) -> fmi2Status {
     let read = |instance: &mut Instance, reference| instance.string(reference).map(CStr::as_ptr);
-    get(c, states::GET_STRING, vr, nvr, value, read)
+    // SAFETY: the contract of the module.
+    unsafe { get(c, states::GET_STRING, vr, nvr, value, read) }
 }
 
 /// Sets real inputs and parameters. A value outside its range gives `fmi2Discard`, and none is set.
@@ -103,7 +119,8 @@ pub unsafe extern "C" fn fmi2SetReal(
     nvr: size_t,
     value: *const fmi2Real,
 ) -> fmi2Status {
-    set(c, states::SET_REAL, vr, nvr, value, |value| Ok(Value::Real(value)))
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_REAL, vr, nvr, value, |value| Ok(Value::Real(value))) }
 }
 
 /// Sets integer and enumeration parameters. A value that is not allowed gives `fmi2Discard`, and none is set.
@@ -114,9 +131,12 @@ pub unsafe extern "C" fn fmi2SetInteger(
     nvr: size_t,
     value: *const fmi2Integer,
 ) -> fmi2Status {
-    set(c, states::SET_INTEGER, vr, nvr, value, |value| {
-        Ok(Value::Integer(value))
-    })
+    // SAFETY: the contract of the module.
+    unsafe {
+        set(c, states::SET_INTEGER, vr, nvr, value, |value| {
+            Ok(Value::Integer(value))
+        })
+    }
 }
 
 /// Sets Boolean parameters. Every value except `fmi2False` is true.
@@ -128,7 +148,8 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     value: *const fmi2Boolean,
 ) -> fmi2Status {
     let read = |value| Ok(Value::Boolean(value != fmi2False));
-    set(c, states::SET_BOOLEAN, vr, nvr, value, read)
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, read) }
 }
 
 /// Sets string parameters. A file that cannot be read or is wrong gives `fmi2Discard`, and none is set.
@@ -139,6 +160,8 @@ pub unsafe extern "C" fn fmi2SetString(
     nvr: size_t,
     value: *const fmi2String,
 ) -> fmi2Status {
-    let read = |value| text(value, "value").map(Value::Text);
-    set(c, states::SET_STRING, vr, nvr, value, read)
+    // SAFETY: the contract of the module.
+    let read = |value| unsafe { text(value, "value") }.map(Value::Text);
+    // SAFETY: the contract of the module.
+    unsafe { set(c, states::SET_STRING, vr, nvr, value, read) }
 }
