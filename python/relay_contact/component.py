@@ -16,7 +16,7 @@ from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from fmpy import extract, fmi2, platform, read_model_description, supported_platforms
@@ -38,6 +38,8 @@ SETTABLE = ("parameter", "input")
 LARGEST_REAL = sys.float_info.max
 FOLLOW = "relayContactFollow"
 """Function of the library, beside those of FMI, that does many communication steps."""
+
+Given = TypeVar("Given")
 
 Array = NDArray[np.float64]
 Value = float | str
@@ -168,6 +170,16 @@ class Component:
         if kind not in ("", causality):
             raise RelayContactError(f"{name}: not a{'n' * (kind == 'input')} {kind}, which are allowed here alone")
         return name
+
+    def settables(self, values: Mapping[str, Given], kind: str = "") -> dict[str, Given]:
+        """Return values by the names of parameters or inputs; one that is there twice, as a_b and a.b, is refused."""
+        named: dict[str, Given] = {}
+        for name, value in values.items():
+            dotted = self.settable(name, kind)
+            if dotted in named:
+                raise RelayContactError(f"{dotted}: given twice, with dots and with underscores")
+            named[dotted] = value
+        return named
 
     def choices(self, name: str) -> dict[str, int]:
         """Give the numbers of the choices of a variable, by name."""
@@ -410,8 +422,8 @@ class Contact:
             self.changed_files = {
                 str(own[name]): str(values[name]) for name in OF_FILES if own.get(name) and own[name] != values[name]
             }
-            for name, value in own.items():
-                self.set(self.component.settable(name), value)
+            for name, value in self.component.settables(own).items():
+                self.set(name, value)
             self.initialise()
         self.tell()
 

@@ -113,7 +113,7 @@ def run_many(
         found: dict[str, float] = {}
         told = {"scene": given.title if isinstance(given, Scene) else str(given), "warning": "", "error": ""}
         try:
-            changed |= {component.settable(name): value for name, value in changes.items()}
+            changed |= component.settables(changes)
             scene = (given if isinstance(given, Scene) else read(given)).changed(component, changes)
             points = scene.points()
             with scene.started(component, points) as (contact, inputs):

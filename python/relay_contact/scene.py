@@ -162,9 +162,9 @@ class Scene:
             yield contact, inputs
 
     def changed(self, component: Component, changes: Mapping[str, Value]) -> Self:
-        """Return the scene with other parameters and inputs; an input of the table is then constant, too."""
-        changed = {component.settable(name): value for name, value in changes.items()}
-        table = {name: column for name, column in self.table.items() if name not in changed}
+        """Return the scene, its table checked, with other parameters and inputs; one of the table is then constant."""
+        changed = component.settables(changes)
+        table = {name: column for name, column in courses(component, self.table).items() if name not in changed}
         return replace(self, values=self.values | changed, table=table if table.keys() - {"time"} else {})
 
 
@@ -220,7 +220,7 @@ def run(
     """
     component = component or Component()
     scene = (scene if isinstance(scene, Scene) else Scene.read(scene, component)).changed(component, changes)
-    course = courses(component, scene.table if inputs is None else inputs)
+    course = scene.table if inputs is None else courses(component, inputs)
     if twice := course.keys() & {component.settable(name) for name in changes}:
         raise RelayContactError(f"{', '.join(sorted(twice))}: given twice, as a constant and among the inputs")
     names = [component.name(name) for name in (scene.outputs if outputs is None else outputs)]
@@ -258,8 +258,8 @@ def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, A
     if "time" not in given:
         raise RelayContactError('inputs: the column "time" is missing')
     found = {}
-    for name, values in given.items():
-        name = name if name == "time" else component.settable(name, "input")
+    columns = component.settables({name: values for name, values in given.items() if name != "time"}, "input")
+    for name, values in {"time": given["time"], **columns}.items():
         try:
             found[name] = np.asarray(values, dtype=float)
         except (TypeError, ValueError) as error:

@@ -388,6 +388,8 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": [-2.0, -1.0], "base.acceleration": 2 * [0.0]}}, "time = -2 to -1 s: not allowed"),
         ({"inputs": {"time": [0.0, 9e-6, 1.0], "base.acceleration": 3 * [0.0]}}, "step = 1e-05 s: .* at most 9e-06 s"),
         ({"inputs": {"time": [0.0], "base.acceleration": [0.0]}, "base.acceleration": 1.0}, "given twice"),
+        ({"beam.length": 0.015, "beam_length": 0.016}, "^beam.length: given twice"),
+        ({"inputs": {"time": [0.0], "base.acceleration": [0.0], "base_acceleration": [1.0]}}, "tion: given twice"),
         ({"spring.thickness": "thick"}, "no such variable"),
         ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),
         ({"contact.force": 1.0}, "an output, which cannot be set"),
@@ -403,6 +405,11 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
 def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str) -> None:  # noqa: ANN401
     with pytest.raises(RelayContactError, match=message):
         run("paper-1khz", component=COMPONENT, **given)
+
+
+def test_a_parameter_of_two_spellings_is_refused_as_an_instance_begins() -> None:
+    with pytest.raises(RelayContactError, match=r"^contact.overtravel: given twice"):
+        COMPONENT.started({"contact.overtravel": 1e-4, "contact_overtravel": 3e-4})
 
 
 def test_factors_of_entries_are_checked() -> None:
