@@ -413,6 +413,10 @@ class Contact:
     def begin(self, values: Values) -> None:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
         start = self.component.value({}, "beam.youngsModulus")
+        entries = {name: value for name, value in values.items() if is_entry(name)}
+        parameters = {name: value for name, value in values.items() if name not in entries}
+        # Entries look for their file and its modulus by name.
+        values = self.component.settables(parameters) | entries
         with self.explained():
             for parameter, prefix in OF_FILES.items():
                 if parameter in values and any(name.startswith(prefix) for name in values):
@@ -422,7 +426,7 @@ class Contact:
             self.changed_files = {
                 str(own[name]): str(values[name]) for name in OF_FILES if own.get(name) and own[name] != values[name]
             }
-            for name, value in self.component.settables(own).items():
+            for name, value in own.items():
                 self.set(name, value)
             self.initialise()
         self.tell()
