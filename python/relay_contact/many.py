@@ -118,7 +118,9 @@ def run_many(
             points = scene.points()
             with scene.started(component, points) as (contact, inputs):
                 contact.drive(points, inputs)
-                found |= {name: contact.get(name) for name in names or map(component.name, scene.outputs)}
+                ends = {name: float(course[-1]) for name, course in inputs.items()}
+                for name in names or map(component.name, scene.outputs):
+                    found[name] = ends[name] if name in ends else contact.get(name)
                 told["warning"] = " ".join(contact.warnings)
         except (RelayContactError, OSError) as error:
             told["error"] = str(error)

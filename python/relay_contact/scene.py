@@ -281,6 +281,8 @@ def simulated(scene: Scene, time: Array, component: Component, tell: Callable[[f
         for begin in range(0, len(time) - 1, SHOWN):
             part = slice(begin, begin + SHOWN + 1)
             own = contact.drive(time[part], {name: course[part] for name, course in inputs.items()}, scene.outputs)
+            # The component has inputs as they were set, at the begin of a step.
+            own |= {name: course[part][1:] for name, course in inputs.items()}
             rows.append(np.column_stack((time[part][1:], *(own[name] for name in scene.outputs))))
             tell(float(time[part][-1]))
     return np.concatenate(rows)
