@@ -189,6 +189,9 @@ class Component:
         """Return the number that stands for a value of a variable; a value of another type is refused."""
         kind = self.variables[name].type
         choices = self.choices(name) if kind == "Enumeration" else {}
+        if isinstance(value, np.bool_ | np.floating):
+            # Of a column of a table: a truth is no number there, and the largest number of single precision is smaller.
+            value = value.item()
         if isinstance(value, str) and value in choices:
             return choices[value]
         # Not a text such as "0.6": whoever writes it may mean a unit, too.

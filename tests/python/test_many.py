@@ -123,6 +123,17 @@ def test_a_table_made_in_python_is_that_of_run() -> None:
     assert run_many([scene], component=COMPONENT)["contact.force"][0] == pressed[-1]
 
 
+def test_values_from_the_columns_of_a_table_are_those_of_python() -> None:
+    single, modes = np.float32(2e-4), np.int64(9)
+    changes: Any = {"effects.contactDamping": np.False_, "contact.overtravel": single, "solver.modes": modes}
+    plain: Values = {"effects.contactDamping": False, "contact.overtravel": float(single), "solver.modes": 9}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        table = run_many([(CHATTER, changes), (CHATTER, plain)], component=COMPONENT)
+    assert table["error"].tolist() == ["", ""]
+    assert table["contact.force"][0] == table["contact.force"][1]
+
+
 def test_none_are_an_empty_table() -> None:
     table = run_many([], component=COMPONENT)
     assert list(table) == ["scene", "warning", "error"]
