@@ -369,6 +369,8 @@ class Contact:
         from Python takes longer than a step: here the component steps by itself, and Python is free for something else.
         """
         times = np.ascontiguousarray(time, dtype=np.float64)
+        if times.ndim != 1:
+            raise RelayContactError(f"time of {times.ndim} dimensions: not allowed, allowed is one")
         given = np.zeros((len(times), len(courses)))
         for column, course in enumerate(courses.values()):
             given[:, column] = course

@@ -257,11 +257,12 @@ def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, A
         return {}
     if "time" not in given:
         raise RelayContactError('inputs: the column "time" is missing')
-    found = {}
+    found: dict[str, Array] = {}
     columns = component.settables({name: values for name, values in given.items() if name != "time"}, "input")
     for name, values in {"time": given["time"], **columns}.items():
         try:
-            found[name] = np.asarray(values, dtype=float)
+            # What is masked is missing.
+            found[name] = np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
         except (TypeError, ValueError) as error:
             raise RelayContactError(f"inputs: {name}: not allowed, allowed are numbers") from error
     for name, column in found.items():

@@ -381,6 +381,7 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": [0.0, 0.0], "base.acceleration": 2 * [0.0]}}, "time = 0 s after 0 s: .*have to rise"),
         ({"inputs": {"time": [0.0, 1.0], "base.acceleration": [0.0]}}, "base.acceleration: .* as many as times"),
         ({"inputs": {"time": [0.0], "base.acceleration": [float("nan")]}}, "base.acceleration: .*finite"),
+        ({"inputs": {"time": [0.0], "base.acceleration": np.ma.masked_equal([9.0], 9.0)}}, "acceleration: .*finite"),
         ({"inputs": {"time": [], "base.acceleration": []}}, "finite numbers"),
         ({"inputs": {"time": ["a"], "base.acceleration": [0.0]}}, "time: not allowed, allowed are numbers"),
         ({"inputs": {"time": [0.0], "tip.mass": [1e-5]}}, "tip.mass: not an input"),
@@ -405,6 +406,11 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
 def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str) -> None:  # noqa: ANN401
     with pytest.raises(RelayContactError, match=message):
         run("paper-1khz", component=COMPONENT, **given)
+
+
+def test_points_of_time_are_in_one_row() -> None:
+    with COMPONENT.started() as contact, pytest.raises(RelayContactError, match="time of 2 dimensions: not allowed"):
+        contact.drive([[0.0, 1e-5]], {}, ["contact.force"])
 
 
 def test_a_parameter_of_two_spellings_is_refused_as_an_instance_begins() -> None:
