@@ -181,6 +181,11 @@ class Component:
             named[dotted] = value
         return named
 
+    def named(self, values: Mapping[str, Given]) -> dict[str, Given]:
+        """Return the same with entries of spring files, which look for their file and its modulus by name."""
+        entries = {name: value for name, value in values.items() if is_entry(name)}
+        return self.settables({name: value for name, value in values.items() if name not in entries}) | entries
+
     def choices(self, name: str) -> dict[str, int]:
         """Give the numbers of the choices of a variable, by name."""
         return {item.name: int(item.value) for item in self.variables[name].declaredType.items}
@@ -418,10 +423,7 @@ class Contact:
     def begin(self, values: Values) -> None:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
         start = self.component.value({}, "beam.youngsModulus")
-        entries = {name: value for name, value in values.items() if is_entry(name)}
-        parameters = {name: value for name, value in values.items() if name not in entries}
-        # Entries look for their file and its modulus by name.
-        values = self.component.settables(parameters) | entries
+        values = self.component.named(values)
         with self.explained():
             for parameter, prefix in OF_FILES.items():
                 if parameter in values and any(name.startswith(prefix) for name in values):

@@ -165,7 +165,8 @@ class Scene:
         """Return the scene, its table checked, with other parameters and inputs; one of the table is then constant."""
         changed = component.settables(changes)
         table = {name: column for name, column in courses(component, self.table).items() if name not in changed}
-        return replace(self, values=self.values | changed, table=table if table.keys() - {"time"} else {})
+        values = component.named(self.values) | changed
+        return replace(self, values=values, table=table if table.keys() - {"time"} else {})
 
 
 class Result(np.ndarray[tuple[int], np.dtype[np.void]]):

@@ -408,6 +408,16 @@ def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str
         run("paper-1khz", component=COMPONENT, **given)
 
 
+def test_a_scene_made_in_python_is_changed_in_either_spelling() -> None:
+    table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
+    values: dict[str, Any] = {"contact_overtravel": 1e-4, "base_acceleration": 9.0}
+    scene = Scene("", 1e-4, 1e-5, ["contact.force"], values, table)
+    changes: list[dict[str, Any]] = [{"contact.overtravel": 3e-4}, {"contact_overtravel": 3e-4}]
+    dotted, other = (run(scene, component=COMPONENT, **each)["contact.force"] for each in changes)
+    assert np.array_equal(dotted, other)
+    assert dotted[0] == pytest.approx(3 * run(scene, component=COMPONENT)["contact.force"][0], rel=1e-2)
+
+
 def test_points_of_time_are_in_one_row() -> None:
     with COMPONENT.started() as contact, pytest.raises(RelayContactError, match="time of 2 dimensions: not allowed"):
         contact.drive([[0.0, 1e-5]], {}, ["contact.force"])
