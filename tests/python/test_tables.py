@@ -70,6 +70,7 @@ def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, 
         ("travel [um];force [cN]\n1;1.000,5\n", ":2: column force: 1.000,5: not allowed, allowed is a number"),
         ("travel [um];force [cN]\n" + by_semicolons(PLAIN) + "end of data\n", ":7: 1 values: not allowed"),
         ("travel [um],force [cN],force [N]\n", ":1: column force: there twice"),
+        ("travel [um],force [cN]\nmm,cN\n" + PLAIN, ":2: column travel: unit mm: not allowed, allowed is um"),
         ("time,displacement,velocity\n0,1,1\n", "columns displacement and velocity: not allowed, allowed is one"),
         ("force 12\nno table\n", "csv: no line with the names of the columns"),
         ("travel,level\n", ":1: columns travel, level: no measurement that is known; there are static force: travel"),
@@ -122,6 +123,17 @@ communicationStep = 1e-5
 outputs = ["contact.force"]
 inputs.file = "measured.csv"
 """
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Time [ms],coil.relativeCurrent [%]\n0,0\n1,90\n", "time;COIL.RELATIVECURRENT\nms;1\n0;0\n1;0,9\n"],
+)
+def test_the_current_of_a_coil_is_read_with_its_unit(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "coil.csv"
+    path.write_text(text, encoding="utf-8")
+    table = {name: column.tolist() for name, column in input_table(path).items()}
+    assert table == {"time": [0.0, 1e-3], "coil.relativeCurrent": [0.0, pytest.approx(0.9, rel=1e-15)]}
 
 
 def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
