@@ -24,6 +24,8 @@ from relay_contact.tables import read as read_columns
 
 MOST = 10**7
 """Communication steps of a run, whose rows stay in memory."""
+PASSED = 0.01
+"""Part of the range of an input by which it may pass a row of its table."""
 LONG = 100
 """Times the stop, from which on a table may have its time in another unit."""
 INPUTS: Units = {
@@ -151,13 +153,27 @@ class Scene:
         }
         return [text for text, true in told.items() if true]
 
+    def missed(self, points: Array, inputs: Mapping[str, Array]) -> list[str]:
+        """Return in words where inputs pass rows of the table that lie between the communication points."""
+        told = []
+        for name, course in inputs.items():
+            time, column = self.table["time"], self.table[name]
+            inside = (time >= 0) & (time <= self.stop)
+            beside = np.where(inside, np.abs(np.interp(time, points, course) - column), 0.0)
+            at, span = int(beside.argmax()), np.ptp(column)
+            if beside[at] > PASSED * span:
+                text = f"{name} passes its row at {time[at]:g} s by {100 * beside[at] / span:.2g} % of its range"
+                told.append(f"inputs: {text}: between communication points inputs are linear, choose shorter steps")
+        return told
+
     @contextmanager
     def started(self, component: Component, points: Array) -> Iterator[tuple[Contact, dict[str, Array]]]:
-        """Give an instance at the begin of the run, which warns of what the table does not cover, and the inputs."""
+        """Give an instance at the begin of the run, which warns of what is lost of the table, and the inputs."""
         uncovered, inputs = self.uncovered(), self.inputs(points)
+        remarks = uncovered + self.missed(points, inputs)
         first = {name: float(course[0]) for name, course in inputs.items()}
         with component.started(self.values | first) as contact, contact.explained():
-            for text in uncovered:
+            for text in remarks:
                 contact.keep(fmi2Warning, text)
             yield contact, inputs
 

@@ -171,6 +171,16 @@ def test_a_run_warns_of_inputs_that_do_not_cover_it(rows: list[float], told: lis
     assert many["warning"].tolist() == [" ".join(told), ""]
 
 
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+@pytest.mark.parametrize(("step", "cut"), [(1e-3, False), (2.5e-4, False), (7e-4, True), (1e-5, False)])
+def test_a_run_warns_of_a_peak_between_its_communication_points(step: float, cut: bool) -> None:
+    """At 0.7 and 1.4 ms the triangle has 70 and 60 % of its peak: between them it has 65.7 % there."""
+    table = {"time": 1e-3 * np.arange(4.0), "base.acceleration": np.array([0.0, 500.0, 0.0, 0.0])}
+    warnings = run(Scene("", 3e-3, step, ["contact.force"], {}, table), component=COMPONENT).warnings
+    told = "inputs: base.acceleration passes its row at 0.001 s by 34 % of its range: "
+    assert [text.startswith(told) for text in warnings] == [True] * cut
+
+
 def test_inputs_with_rows_that_the_run_would_pass_over_are_refused_in_its_row() -> None:
     table = {"time": np.array([0.0, 1e-3, 2e-3]), "base.acceleration": np.zeros(3)}
     cases = [Scene("", 5e-3, step, ["contact.force"], {}, table) for step in (1e-3, 1.02e-3)]
