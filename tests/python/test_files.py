@@ -301,6 +301,13 @@ def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
             qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 
+def test_the_first_of_twin_contacts_bears_a_force(tmp_path: Path) -> None:
+    relay = tmp_path / "relay.toml"
+    relay.write_text("[parameters]\neffects.parallelContact = true\nparallel.offset = -1e-3\n")
+    with pytest.raises(RelayContactError, match=r"position 1: parallel.offset = -0.001 m: .* exchange both"):
+        qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
+
+
 @pytest.mark.parametrize("frequencies", ["[500.0, 10.0]", "[100.0, 100.5]", "[0.0, 500.0]", "[10.0, 2e4]", "[10.0]"])
 def test_bands_that_the_response_does_not_resolve(tmp_path: Path, frequencies: str) -> None:
     path, text = tmp_path / "standard.toml", standards()["IEC-60068-2"].read_text()
