@@ -309,6 +309,9 @@ class Contact:
 
     def give_back(self) -> None:
         """End the simulation, and leave the instance to others; one that has failed for good is freed."""
+        if "fmu" not in vars(self):
+            # It was given back before, and may be another's.
+            return
         try:
             self.own.fmu.reset()
             usable = True

@@ -134,6 +134,17 @@ def test_values_from_the_columns_of_a_table_are_those_of_python() -> None:
     assert table["contact.force"][0] == table["contact.force"][1]
 
 
+def test_an_instance_that_is_given_back_twice_is_not_taken_from_the_next() -> None:
+    with COMPONENT.started({"contact.overtravel": 1e-4}) as first:
+        first.give_back()
+        with COMPONENT.started({"contact.overtravel": 3e-4}) as second:
+            force = second.get("contact.force")
+            first.give_back()
+            second.step(0.0, 1e-5)
+            assert second.get("contact.force") == pytest.approx(force, rel=1e-9)
+    assert len(set(map(id, COMPONENT.idle))) == len(COMPONENT.idle)
+
+
 def test_none_are_an_empty_table() -> None:
     table = run_many([], component=COMPONENT)
     assert list(table) == ["scene", "warning", "error"]
