@@ -166,6 +166,33 @@ fn the_circuit_is_interrupted_while_both_are_open() {
     }
 }
 
+/// While one contact unloads and the other is loaded, the resistance of both together turns between instants at which neither force
+/// does, anywhere in an integration step.
+#[test]
+fn the_greatest_resistance_of_both_is_that_of_instants_within_the_step() {
+    for (amplitude, frequency, offset) in [
+        (428.588_36, 1761.6964, 1e-6),
+        (427.509_85, 1814.7433, 1e-6),
+        (402.297_53, 1942.2115, -1e-6),
+    ] {
+        let mut scene = pair(shaken(amplitude, frequency));
+        scene.effects.contact_law = ContactLawKind::Rough;
+        scene.parallel.offset = offset;
+        let (instants, _) = course(&scene, 1e-6, 3000, [RealOutput::ContactResistance]);
+        let (found, _) = course(&scene, 1e-4, 30, [RealOutput::StepMaximumResistance]);
+        let mut compared = 0;
+        for (n, (instants, [found])) in instants.chunks(100).zip(found).enumerate() {
+            let expected = instants.iter().flatten().copied().fold(0.0, f64::max);
+            // Where both open, the resistance leaps.
+            if found < 1.0 {
+                compared += 1;
+                assert!(expected <= found * (1.0 + 5e-5), "{amplitude} {n}: {found} {expected}");
+            }
+        }
+        assert!(compared > 10, "{amplitude}: {compared}");
+    }
+}
+
 /// By Barber, `k / (rho E*)` with the stiffness `k` of each under its own force: of spheres `(6 E*^2 R F)^(1/3)`, of rough contacts
 /// `k_r (F / F_r)^n`.
 #[test]

@@ -16,7 +16,7 @@ from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from fmpy import extract, fmi2, platform, read_model_description, supported_platforms
@@ -38,6 +38,8 @@ SETTABLE = ("parameter", "input")
 LARGEST_REAL = sys.float_info.max
 FOLLOW = "relayContactFollow"
 """Function of the library, beside those of FMI, that does many communication steps."""
+
+Given = TypeVar("Given")
 
 Array = NDArray[np.float64]
 Value = float | str
@@ -169,6 +171,21 @@ class Component:
             raise RelayContactError(f"{name}: not a{'n' * (kind == 'input')} {kind}, which are allowed here alone")
         return name
 
+    def settables(self, values: Mapping[str, Given], kind: str = "") -> dict[str, Given]:
+        """Return values by the names of parameters or inputs; one that is there twice, as a_b and a.b, is refused."""
+        named: dict[str, Given] = {}
+        for name, value in values.items():
+            dotted = self.settable(name, kind)
+            if dotted in named:
+                raise RelayContactError(f"{dotted}: given twice, with dots and with underscores")
+            named[dotted] = value
+        return named
+
+    def named(self, values: Mapping[str, Given]) -> dict[str, Given]:
+        """Return the same with entries of spring files, which look for their file and its modulus by name."""
+        entries = {name: value for name, value in values.items() if is_entry(name)}
+        return self.settables({name: value for name, value in values.items() if name not in entries}) | entries
+
     def choices(self, name: str) -> dict[str, int]:
         """Give the numbers of the choices of a variable, by name."""
         return {item.name: int(item.value) for item in self.variables[name].declaredType.items}
@@ -177,6 +194,9 @@ class Component:
         """Return the number that stands for a value of a variable; a value of another type is refused."""
         kind = self.variables[name].type
         choices = self.choices(name) if kind == "Enumeration" else {}
+        if isinstance(value, np.bool_ | np.floating):
+            # Of a column of a table: a truth is no number there, and the largest number of single precision is smaller.
+            value = value.item()
         if isinstance(value, str) and value in choices:
             return choices[value]
         # Not a text such as "0.6": whoever writes it may mean a unit, too.
@@ -289,6 +309,9 @@ class Contact:
 
     def give_back(self) -> None:
         """End the simulation, and leave the instance to others; one that has failed for good is freed."""
+        if "fmu" not in vars(self):
+            # It was given back before, and may be another's.
+            return
         try:
             self.own.fmu.reset()
             usable = True
@@ -354,6 +377,8 @@ class Contact:
         from Python takes longer than a step: here the component steps by itself, and Python is free for something else.
         """
         times = np.ascontiguousarray(time, dtype=np.float64)
+        if times.ndim != 1:
+            raise RelayContactError(f"time of {times.ndim} dimensions: not allowed, allowed is one")
         given = np.zeros((len(times), len(courses)))
         for column, course in enumerate(courses.values()):
             given[:, column] = course
@@ -401,6 +426,7 @@ class Contact:
     def begin(self, values: Values) -> None:
         """Set parameters, inputs and entries of the spring file, and go through the initialisation."""
         start = self.component.value({}, "beam.youngsModulus")
+        values = self.component.named(values)
         with self.explained():
             for parameter, prefix in OF_FILES.items():
                 if parameter in values and any(name.startswith(prefix) for name in values):
@@ -411,7 +437,7 @@ class Contact:
                 str(own[name]): str(values[name]) for name in OF_FILES if own.get(name) and own[name] != values[name]
             }
             for name, value in own.items():
-                self.set(self.component.settable(name), value)
+                self.set(name, value)
             self.initialise()
         self.tell()
 

@@ -104,12 +104,14 @@ def run_many(
         found: dict[str, float] = {}
         told = {"scene": given.title if isinstance(given, Scene) else str(given), "warning": "", "error": ""}
         try:
-            changed |= {component.settable(name): value for name, value in changes.items()}
+            changed |= component.settables(changes)
             scene = (given if isinstance(given, Scene) else read(given)).changed(component, changes)
             points = scene.points()
             with scene.started(component, points) as (contact, inputs):
                 contact.drive(points, inputs)
-                found |= {name: contact.get(name) for name in names or map(component.name, scene.outputs)}
+                ends = {name: float(course[-1]) for name, course in inputs.items()}
+                for name in names or map(component.name, scene.outputs):
+                    found[name] = ends[name] if name in ends else contact.get(name)
                 told["warning"] = " ".join(contact.warnings)
         except (RelayContactError, OSError) as error:
             told["error"] = str(error)

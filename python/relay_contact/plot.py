@@ -24,6 +24,7 @@ COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
 FIRST, SECOND = BLUE, RED
 # By which it is told whether a contact is closed.
 FORCES = {"first": "contact.force", "second": "second.force"}
+PARALLEL = "parallel.force"
 # Beyond this ratio of greatest to least a logarithmic axis is used.
 DECADES = 1e3
 # What the outputs are called in words, where it is not the words of their names.
@@ -72,6 +73,12 @@ def panel(axes: Axes, time: Array, name: str, values: Array, unit: Unit | None, 
     words = WORDS.get(name, name.replace(".", "\n"))
     axes.set_ylabel(words + (f" [{label}]" if label else ""), fontsize="small")
     axes.grid(alpha=0.3)
+
+
+def open_times(columns: Mapping[str, Array]) -> NDArray[np.bool_] | None:
+    """Tell when no contact is closed, of those whose forces are there."""
+    closed = [columns[name] > 0 for name in (*FORCES.values(), PARALLEL) if name in columns]
+    return ~np.logical_or.reduce(closed) if closed else None
 
 
 def bars(axes: Axes, time: Array, closed: Mapping[str, NDArray[np.bool_]]) -> None:
@@ -130,12 +137,13 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
             axes.legend(loc="upper right", fontsize="small")
     if both:
         bars(grid[-1, 0], scale * time, closed)
-    is_open = ~np.logical_or.reduce(list(closed.values())) if closed else np.zeros(len(time), dtype=bool)
-    if is_open.any():
+    is_open = open_times(columns)
+    if is_open is not None and is_open.any():
+        words = ["open", "both open", "all open"][both + (PARALLEL in columns)]
         for axes in grid[:, 0]:
             axes.fill_between(
                 scale * time, 0, 1, where=is_open.tolist(), step="post", transform=axes.get_xaxis_transform(),
-                color="#999999", alpha=0.25, linewidth=0, label="both open" if both else "open",
+                color="#999999", alpha=0.25, linewidth=0, label=words,
             )  # fmt: skip
         grid[0, 0].legend(loc="upper right", fontsize="small")
     grid[0, 0].set_title("\n".join(wrap(title, 100)), fontsize="medium")

@@ -24,6 +24,8 @@ from relay_contact.tables import read as read_columns
 
 MOST = 10**7
 """Communication steps of a run, whose rows stay in memory."""
+PASSED = 0.01
+"""Part of the range of an input by which it may pass a row of its table."""
 LONG = 100
 """Times the stop, from which on a table may have its time in another unit."""
 INPUTS: Units = {
@@ -154,21 +156,36 @@ class Scene:
         }
         return [text for text, true in told.items() if true]
 
+    def missed(self, points: Array, inputs: Mapping[str, Array]) -> list[str]:
+        """Return in words where inputs pass rows of the table that lie between the communication points."""
+        told = []
+        for name, course in inputs.items():
+            time, column = self.table["time"], self.table[name]
+            inside = (time >= 0) & (time <= self.stop)
+            beside = np.where(inside, np.abs(np.interp(time, points, course) - column), 0.0)
+            at, span = int(beside.argmax()), np.ptp(column)
+            if beside[at] > PASSED * span:
+                text = f"{name} passes its row at {time[at]:g} s by {100 * beside[at] / span:.2g} % of its range"
+                told.append(f"inputs: {text}: between communication points inputs are linear, choose shorter steps")
+        return told
+
     @contextmanager
     def started(self, component: Component, points: Array) -> Iterator[tuple[Contact, dict[str, Array]]]:
-        """Give an instance at the begin of the run, which warns of what the table does not cover, and the inputs."""
+        """Give an instance at the begin of the run, which warns of what is lost of the table, and the inputs."""
         uncovered, inputs = self.uncovered(), self.inputs(points)
+        remarks = uncovered + self.missed(points, inputs)
         first = {name: float(course[0]) for name, course in inputs.items()}
         with component.started(self.values | first) as contact, contact.explained():
-            for text in uncovered:
+            for text in remarks:
                 contact.keep(fmi2Warning, text)
             yield contact, inputs
 
     def changed(self, component: Component, changes: Mapping[str, Value]) -> Self:
-        """Return the scene with other parameters and inputs; an input of the table is then constant, too."""
-        changed = {component.settable(name): value for name, value in changes.items()}
-        table = {name: column for name, column in self.table.items() if name not in changed}
-        return replace(self, values=self.values | changed, table=table if table.keys() - {"time"} else {})
+        """Return the scene, its table checked, with other parameters and inputs; one of the table is then constant."""
+        changed = component.settables(changes)
+        table = {name: column for name, column in courses(component, self.table).items() if name not in changed}
+        values = component.named(self.values) | changed
+        return replace(self, values=values, table=table if table.keys() - {"time"} else {})
 
 
 class Result(np.ndarray[tuple[int], np.dtype[np.void]]):
@@ -223,7 +240,7 @@ def run(
     """
     component = component or Component()
     scene = (scene if isinstance(scene, Scene) else Scene.read(scene, component)).changed(component, changes)
-    course = courses(component, scene.table if inputs is None else inputs)
+    course = scene.table if inputs is None else courses(component, inputs)
     if twice := course.keys() & {component.settable(name) for name in changes}:
         raise RelayContactError(f"{', '.join(sorted(twice))}: given twice, as a constant and among the inputs")
     names = [component.name(name) for name in (scene.outputs if outputs is None else outputs)]
@@ -260,11 +277,12 @@ def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, A
         return {}
     if "time" not in given:
         raise RelayContactError('inputs: the column "time" is missing')
-    found = {}
-    for name, values in given.items():
-        name = name if name == "time" else component.settable(name, "input")
+    found: dict[str, Array] = {}
+    columns = component.settables({name: values for name, values in given.items() if name != "time"}, "input")
+    for name, values in {"time": given["time"], **columns}.items():
         try:
-            found[name] = np.asarray(values, dtype=float)
+            # What is masked is missing.
+            found[name] = np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
         except (TypeError, ValueError) as error:
             raise RelayContactError(f"inputs: {name}: not allowed, allowed are numbers") from error
     for name, column in found.items():
@@ -284,6 +302,8 @@ def simulated(scene: Scene, time: Array, component: Component, tell: Callable[[f
         for begin in range(0, len(time) - 1, SHOWN):
             part = slice(begin, begin + SHOWN + 1)
             own = contact.drive(time[part], {name: course[part] for name, course in inputs.items()}, scene.outputs)
+            # The component has inputs as they were set, at the begin of a step.
+            own |= {name: course[part][1:] for name, course in inputs.items()}
             rows.append(np.column_stack((time[part][1:], *(own[name] for name in scene.outputs))))
             tell(float(time[part][-1]))
     return np.concatenate(rows)

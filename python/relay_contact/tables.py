@@ -9,7 +9,7 @@ import codecs
 import csv
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -66,12 +66,13 @@ def spelled(unit: str) -> str:
     return OTHERS.get(unit, unit)
 
 
-def parted(cell: str) -> tuple[str, str]:
-    """Return name and unit of the head of a column."""
+def parted(cell: str, known: Collection[str] = ()) -> tuple[str, str]:
+    """Return name and unit of the head of a column; the name as it is known, otherwise in small letters."""
     found = CELL.fullmatch(cell.strip())
     assert found  # Every text is a name.
     name, *units = (each or "" for each in found.group("name", "bracket", "word", "slash"))
-    return name.strip().lower(), spelled("".join(units))
+    small = name.strip().lower()
+    return next((each for each in known if each.lower() == small), small), spelled("".join(units))
 
 
 @dataclass(frozen=True)
@@ -200,8 +201,12 @@ def thorough(path: Path, known: Units, text: str | None = None) -> Table:
     names = split(lines[head].lstrip(" #"), separator)
     places = named(table, names)
     table.places.update(places)
-    if rows and (below := units_below(rows[0][1], places)):
-        table.units.update({name: spelled(unit) for name, unit in below.items() if unit})
+    if rows and (below := units_below(rows[0][1], table)):
+        for name, unit in below.items():
+            if table.units[name] not in ("", unit):
+                text = f"column {name}: unit {unit}: not allowed, allowed is {table.units[name]}, as in its head"
+                raise table.wrong(text, rows[0][0])
+        table.units.update(below)
         del rows[0]
     for number, cells in rows:
         filled = max((place + 1 for place, cell in enumerate(cells) if cell), default=0)
@@ -223,11 +228,11 @@ def begin(lines: Mapping[int, str], known: Units) -> tuple[int, str]:
     """Return the line with the most names of columns, and what is between them; the line 0 if there is none."""
     best, found = 0, (0, ",")
     for number, text in lines.items():
-        if not any(name in text.lower() for name in known):
+        if not any(name.lower() in text.lower() for name in known):
             continue
         for separator in SEPARATORS:
             cells = split(text.lstrip(" #"), separator)
-            count = sum(parted(cell)[0] in known for cell in cells) if len(cells) > 1 or len(known) == 1 else 0
+            count = sum(parted(cell, known)[0] in known for cell in cells) if len(cells) > 1 or len(known) == 1 else 0
             if count > best:
                 best, found = count, (number, separator)
     return found
@@ -236,7 +241,7 @@ def begin(lines: Mapping[int, str], known: Units) -> tuple[int, str]:
 def named(table: Table, cells: list[str]) -> dict[str, int]:
     """Return the places of the columns that are known, whose units are kept; a slip in a name is refused."""
     places: dict[str, int] = {}
-    for place, (name, unit) in enumerate(map(parted, cells)):
+    for place, (name, unit) in enumerate(parted(cell, table.known) for cell in cells):
         if name not in table.known:
             table.passed.append(name)
         elif name in places:
@@ -250,10 +255,12 @@ def named(table: Table, cells: list[str]) -> dict[str, int]:
     return places
 
 
-def units_below(cells: list[str], places: Mapping[str, int]) -> dict[str, str]:
-    """Return the units by column if a row has them; nothing if it has a number."""
-    found = {name: cells[place].strip("[]() ") for name, place in places.items() if place < len(cells)}
-    return {} if any(is_number(cell) for cell in found.values()) else found
+def units_below(cells: list[str], table: Table) -> dict[str, str]:
+    """Return the units by column if a row has them; nothing if it has a number that is no unit."""
+    found = {name: spelled(cells[place].strip("[]() ")) for name, place in table.places.items() if place < len(cells)}
+    if any(is_number(unit) and unit not in table.known[name] for name, unit in found.items()):
+        return {}
+    return {name: unit for name, unit in found.items() if unit}
 
 
 def is_number(cell: str) -> bool:

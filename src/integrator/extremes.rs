@@ -135,16 +135,16 @@ impl Extremes {
         let Some((mut y, mut least)) = least else {
             return;
         };
-        // Between the samples a parabola, closer with each time.
+        // Between the samples a parabola, closer with each time; beside an end of the step through samples inside.
         let mut apart = (to - from) / f64::from(SAMPLES);
         for _ in 0..3 {
-            let [before, after] = [y - apart, y + apart].map(|y| conductance(y.clamp(from, to)));
-            let bend = before - 2.0 * least + after;
-            let inside = y - apart >= from && y + apart <= to;
-            if !inside || bend <= 0.0 {
+            let middle = y.max(from + apart).min(to - apart);
+            let [before, at, after] = [middle - apart, middle, middle + apart].map(&conductance);
+            let bend = before - 2.0 * at + after;
+            if bend <= 0.0 {
                 break;
             }
-            let lower = y + 0.5 * apart * (before - after) / bend;
+            let lower = (middle + 0.5 * apart * (before - after) / bend).max(from).min(to);
             (y, least) = [(y, least), (lower, conductance(lower))]
                 .into_iter()
                 .min_by(|a, b| a.1.total_cmp(&b.1))

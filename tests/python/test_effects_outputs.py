@@ -5,10 +5,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from component import run
+from component import COMPONENT, run
 from one_sided import Course
 from reference import Reference
-from relay_contact import Array, Scene, Values
+from relay_contact import Array, Scene, Values, run_many
 from relay_contact import run as run_scene
 
 SHAKEN: Values = {"effects.excitation": "Sine", "excitation.frequency": 1000.0, "effects.axialForce": "None"}
@@ -65,6 +65,19 @@ def test_resistance_and_voltage_follow_from_the_force(
     assert result["contact.conductance"] == pytest.approx(expected, rel=ROUNDING, abs=0)
     assert result["contact.resistance"] == pytest.approx(1 / expected, rel=ROUNDING, abs=0)
     assert result["contact.voltage"] == pytest.approx(np.maximum(-0.1 / expected, -source), rel=ROUNDING, abs=0)
+
+
+def test_voltage_is_resistance_times_the_current_of_the_same_row() -> None:
+    """Of an input over time, too, which the component itself has as it was at the begin of the step."""
+    time = np.linspace(0.0, 1e-3, 101)
+    table = {"time": time, "contact.current": 0.1 + 50.0 * time}
+    output = ["contact.current", "contact.resistance", "contact.voltage"]
+    scene = Scene("", 1e-3, 1e-5, output, dict(PRESSED), table)
+    result = run_scene(scene, component=COMPONENT)
+    current = result["contact.current"]
+    assert current == pytest.approx(table["contact.current"], rel=ROUNDING)
+    assert result["contact.voltage"] == pytest.approx(current * result["contact.resistance"], rel=ROUNDING, abs=0)
+    assert run_many([scene], component=COMPONENT)["contact.current"][0] == current[-1]
 
 
 def test_without_resistance_its_outputs_are_zero_and_the_motion_is_the_same() -> None:

@@ -308,6 +308,13 @@ def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
             qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 
+def test_the_first_of_twin_contacts_bears_a_force(tmp_path: Path) -> None:
+    relay = tmp_path / "relay.toml"
+    relay.write_text("[parameters]\neffects.parallelContact = true\nparallel.offset = -1e-3\n")
+    with pytest.raises(RelayContactError, match=r"position 1: parallel.offset = -0.001 m: .* exchange both"):
+        qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
+
+
 @pytest.mark.parametrize("frequencies", ["[500.0, 10.0]", "[100.0, 100.5]", "[0.0, 500.0]", "[10.0, 2e4]", "[10.0]"])
 def test_bands_that_the_response_does_not_resolve(tmp_path: Path, frequencies: str) -> None:
     path, text = tmp_path / "standard.toml", standards()["IEC-60068-2"].read_text()
@@ -388,6 +395,7 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": [0.0, 0.0], "base.acceleration": 2 * [0.0]}}, "time = 0 s after 0 s: .*have to rise"),
         ({"inputs": {"time": [0.0, 1.0], "base.acceleration": [0.0]}}, "base.acceleration: .* as many as times"),
         ({"inputs": {"time": [0.0], "base.acceleration": [float("nan")]}}, "base.acceleration: .*finite"),
+        ({"inputs": {"time": [0.0], "base.acceleration": np.ma.masked_equal([9.0], 9.0)}}, "acceleration: .*finite"),
         ({"inputs": {"time": [], "base.acceleration": []}}, "finite numbers"),
         ({"inputs": {"time": ["a"], "base.acceleration": [0.0]}}, "time: not allowed, allowed are numbers"),
         ({"inputs": {"time": [0.0], "tip.mass": [1e-5]}}, "tip.mass: not an input"),
@@ -395,6 +403,8 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": [-2.0, -1.0], "base.acceleration": 2 * [0.0]}}, "time = -2 to -1 s: not allowed"),
         ({"inputs": {"time": [0.0, 9e-6, 1.0], "base.acceleration": 3 * [0.0]}}, "step = 1e-05 s: .* at most 9e-06 s"),
         ({"inputs": {"time": [0.0], "base.acceleration": [0.0]}, "base.acceleration": 1.0}, "given twice"),
+        ({"beam.length": 0.015, "beam_length": 0.016}, "^beam.length: given twice"),
+        ({"inputs": {"time": [0.0], "base.acceleration": [0.0], "base_acceleration": [1.0]}}, "tion: given twice"),
         ({"spring.thickness": "thick"}, "no such variable"),
         ({"excitation.amplitud": 1.0}, "no such variable; did you mean excitation.amplitude"),
         ({"contact.force": 1.0}, "an output, which cannot be set"),
@@ -411,6 +421,26 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
 def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str) -> None:  # noqa: ANN401
     with pytest.raises(RelayContactError, match=message):
         run("paper-1khz", component=COMPONENT, **given)
+
+
+def test_a_scene_made_in_python_is_changed_in_either_spelling() -> None:
+    table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
+    values: dict[str, Any] = {"contact_overtravel": 1e-4, "base_acceleration": 9.0}
+    scene = Scene("", 1e-4, 1e-5, ["contact.force"], values, table)
+    changes: list[dict[str, Any]] = [{"contact.overtravel": 3e-4}, {"contact_overtravel": 3e-4}]
+    dotted, other = (run(scene, component=COMPONENT, **each)["contact.force"] for each in changes)
+    assert np.array_equal(dotted, other)
+    assert dotted[0] == pytest.approx(3 * run(scene, component=COMPONENT)["contact.force"][0], rel=1e-2)
+
+
+def test_points_of_time_are_in_one_row() -> None:
+    with COMPONENT.started() as contact, pytest.raises(RelayContactError, match="time of 2 dimensions: not allowed"):
+        contact.drive([[0.0, 1e-5]], {}, ["contact.force"])
+
+
+def test_a_parameter_of_two_spellings_is_refused_as_an_instance_begins() -> None:
+    with pytest.raises(RelayContactError, match=r"^contact.overtravel: given twice"):
+        COMPONENT.started({"contact.overtravel": 1e-4, "contact_overtravel": 3e-4})
 
 
 def test_factors_of_entries_are_checked() -> None:

@@ -71,13 +71,21 @@ def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
         6: (("closing-bounce", {"solver.tolerance": "small"}), r"solver.tolerance = \"small\": not allowed"),
         7: ((wrong, {}), r"wrong.toml:1: communicationStep: missing"),
         8: (Scene("endless", 1e30, 1e30, ["contact.force"], {"effects.excitation": "Sine"}, {}), r"spacing of time"),
+        9: ((CHATTER, {"beam.length": 0.015, "beam_length": 0.016}), r"^beam.length: given twice"),
     }  # fmt: skip
-    cases = [bad[n][0] if n in bad else (CHATTER, {}) for n in range(10)]
+    tables: list[tuple[dict[str, Any], str]] = [
+        ({"time": [0.0, 1.0], "base.acceleration": [0.0]}, r"base.acceleration: .* as many as times"),
+        ({"base.acceleration": [0.0]}, r'"time" is missing'),
+        ({"time": [0.0, 2.0, 1.0], "base.acceleration": 3 * [0.0]}, r"times have to rise"),
+    ]
+    for place, (given, message) in enumerate(tables, 10):
+        bad[place] = Scene("in Python", 1e-3, 1e-5, ["contact.force"], {}, given), message
+    cases = [bad[n][0] if n in bad else (CHATTER, {}) for n in range(14)]
     alone = run(CHATTER, component=COMPONENT)["contact.resistance"][-1]
     for workers in (1, 3):
         told: list[int] = []
         table = run_many(cases, workers=workers, component=COMPONENT, progress=told.append)
-        assert told[-1] == len(told) == 10
+        assert told[-1] == len(told) == 14
         for n, row in table.iterrows():
             if n in bad:
                 assert pytest.approx(np.nan, nan_ok=True) == row["contact.resistance"]
@@ -105,6 +113,36 @@ def test_an_instance_that_cannot_be_reset_is_freed_and_has_its_row(monkeypatch: 
     assert [bool(error) for error in table["error"]] == [False, True, False]
     assert len(freed) == len(set(map(id, freed))) == 2
     assert not component.idle
+
+
+def test_a_table_made_in_python_is_that_of_run() -> None:
+    table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
+    scene = Scene("pressed", 1e-3, 1e-5, ["contact.force"], {}, table)
+    pressed = run(scene, component=COMPONENT)["contact.force"]
+    assert pressed[-1] > 1.2 * pressed[0]
+    assert run_many([scene], component=COMPONENT)["contact.force"][0] == pressed[-1]
+
+
+def test_values_from_the_columns_of_a_table_are_those_of_python() -> None:
+    single, modes = np.float32(2e-4), np.int64(9)
+    changes: Any = {"effects.contactDamping": np.False_, "contact.overtravel": single, "solver.modes": modes}
+    plain: Values = {"effects.contactDamping": False, "contact.overtravel": float(single), "solver.modes": 9}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        table = run_many([(CHATTER, changes), (CHATTER, plain)], component=COMPONENT)
+    assert table["error"].tolist() == ["", ""]
+    assert table["contact.force"][0] == table["contact.force"][1]
+
+
+def test_an_instance_that_is_given_back_twice_is_not_taken_from_the_next() -> None:
+    with COMPONENT.started({"contact.overtravel": 1e-4}) as first:
+        first.give_back()
+        with COMPONENT.started({"contact.overtravel": 3e-4}) as second:
+            force = second.get("contact.force")
+            first.give_back()
+            second.step(0.0, 1e-5)
+            assert second.get("contact.force") == pytest.approx(force, rel=1e-9)
+    assert len(set(map(id, COMPONENT.idle))) == len(COMPONENT.idle)
 
 
 def test_none_are_an_empty_table() -> None:

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from component import STARTS, run
+from component import COMPONENT, STARTS, run
 from elements import assembled
 from one_sided import Law, System, shaking
 from reference import hertz
 from relay_contact import Values
+from relay_contact import run as run_scene
 from relay_contact.component import sine
+from relay_contact.plot import open_times
 
 ELEMENTS = 16
 """Of trunk and of each tongue."""
@@ -68,3 +70,15 @@ def test_trunk_and_tongues_of_finite_elements_give_the_same_forces(
         assert np.abs(found[f"{name}.force"] - force).max() < ALLOWED * largest, name
         assert (force.min() == 0.0) == (amplitude > 500), name
     assert (np.abs(expected["contact"] - expected["parallel"]).max() > 0.02 * largest) == (offset > 0)
+
+
+def test_twin_contacts_are_open_in_a_figure_while_neither_is_closed() -> None:
+    # Here the first stays back by a micrometre.
+    result = run_scene("twin-contact", component=COMPONENT, parallel_offset=-1e-6)
+    first, parallel = (result[f"{name}.force"] > 0 for name in NAMES)
+    assert (parallel & ~first).any()
+    assert not (first | parallel).all()
+    shaded = open_times(result.columns)
+    assert shaded is not None
+    assert np.array_equal(shaded, ~(first | parallel))
+    assert np.array_equal(shaded, result["contact.resistance"] > 1e6)

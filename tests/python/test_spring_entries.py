@@ -38,6 +38,17 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
     assert forces[1] == pytest.approx(1.21 * forces[0], rel=1e-9)
 
 
+@pytest.mark.parametrize("file", ["", str(SEGMENTS)])
+def test_the_spring_is_as_stiff_with_its_parameters_spelled_for_python(file: str) -> None:
+    named: Any = {"beam.file": file, "beam.youngsModulus": 2e11, "spring.stiffness": 1.21}
+    spelled: Any = {"beam_file": file, "beam_youngsModulus": 2e11, "spring.stiffness": 1.21}
+    frequencies = []
+    for values in (named, spelled):
+        with COMPONENT.started(values) as contact:
+            frequencies += contact.real("preload.frequency")
+    assert frequencies[0] == frequencies[1]
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [

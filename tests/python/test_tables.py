@@ -72,6 +72,7 @@ def test_exports_are_read_as_they_are(tmp_path: Path, name: str, encoding: str, 
         ("travel [um];force [cN]\n1;1.000,5\n", ":2: column force: 1.000,5: not allowed, allowed is a number"),
         ("travel [um];force [cN]\n" + by_semicolons(PLAIN) + "end of data\n", ":7: 1 values: not allowed"),
         ("travel [um],force [cN],force [N]\n", ":1: column force: there twice"),
+        ("travel [um],force [cN]\nmm,cN\n" + PLAIN, ":2: column travel: unit mm: not allowed, allowed is um"),
         ("time,displacement,velocity\n0,1,1\n", "columns displacement and velocity: not allowed, allowed is one"),
         ("force 12\nno table\n", "csv: no line with the names of the columns"),
         ("travel,level\n", ":1: columns travel, level: no measurement that is known; there are static force: travel"),
@@ -127,6 +128,17 @@ inputs.file = "measured.csv"
 """
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["Time [ms],coil.relativeCurrent [%]\n0,0\n1,90\n", "time;COIL.RELATIVECURRENT\nms;1\n0;0\n1;0,9\n"],
+)
+def test_the_current_of_a_coil_is_read_with_its_unit(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "coil.csv"
+    path.write_text(text, encoding="utf-8")
+    table = {name: column.tolist() for name, column in input_table(path).items()}
+    assert table == {"time": [0.0, 1e-3], "coil.relativeCurrent": [0.0, pytest.approx(0.9, rel=1e-15)]}
+
+
 def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
     time, level = 1e-3 * np.array([0.0, 0.5, 1.0, 1.5]), np.array([0.0, 10.0, -10.0, 0.0])
     scene, table = tmp_path / "scene.toml", tmp_path / "measured.csv"
@@ -160,6 +172,16 @@ def test_a_run_warns_of_inputs_that_do_not_cover_it(rows: list[float], told: lis
     assert run(scene, component=COMPONENT).warnings == told
     many = run_many([scene, (scene, {"base.acceleration": 0.0})], component=COMPONENT)
     assert many["warning"].tolist() == [" ".join(told), ""]
+
+
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+@pytest.mark.parametrize(("step", "cut"), [(1e-3, False), (2.5e-4, False), (7e-4, True), (1e-5, False)])
+def test_a_run_warns_of_a_peak_between_its_communication_points(step: float, cut: bool) -> None:
+    """At 0.7 and 1.4 ms the triangle has 70 and 60 % of its peak: between them it has 65.7 % there."""
+    table = {"time": 1e-3 * np.arange(4.0), "base.acceleration": np.array([0.0, 500.0, 0.0, 0.0])}
+    warnings = run(Scene("", 3e-3, step, ["contact.force"], {}, table), component=COMPONENT).warnings
+    told = "inputs: base.acceleration passes its row at 0.001 s by 34 % of its range: "
+    assert [text.startswith(told) for text in warnings] == [True] * cut
 
 
 def test_inputs_with_rows_that_the_run_would_pass_over_are_refused_in_its_row() -> None:

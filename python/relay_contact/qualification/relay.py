@@ -170,12 +170,19 @@ class Relay:
 
 
 def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:
-    """Refuse a monitor for which a closed contact is interrupted at rest, or an open one is closed."""
+    """Refuse a monitor for which a closed contact is interrupted at rest, or an open one is closed.
+
+    Refuse twin contacts, too, of which the first, whose force is judged, is open beside the other.
+    """
     monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
     text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed, the contact has"
     for name, values in relay.positions.items():
         with component.started(values) as contact:
             force, resistance, apart = contact.real("contact.force", "contact.resistance", "resistance.open")
+            parallel, offset = contact.real("parallel.force", "parallel.offset")
+        if parallel > 0 and force <= 0:
+            why = "at rest the parallel contact is closed and the first, whose force is judged, is open: exchange both"
+            raise RelayContactError(f"{name}: parallel.offset = {offset:g} m: not allowed, {why}")
         if force > 0 and resistance >= contacts.threshold:
             raise RelayContactError(f"{name}: {text} {resistance:.3g} Ohm at rest")
         if contacts.threshold >= apart:
