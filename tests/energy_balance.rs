@@ -181,8 +181,10 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
     (sum, stored(&rig) - start, rig.state.energy_balance)
 }
 
+/// No energy comes from nowhere. The balance is far smaller than what the sum misses: its size is that of steps computed too long,
+/// in the unit tests of `energy::balance`.
 #[test]
-fn the_balance_is_that_of_all_works_and_losses() {
+fn works_losses_and_what_is_stored_add_up() {
     for case in cases() {
         let (sum, stored, balance) = run(&case, 1e-8, 1e-7);
         let rest = sum.put_in - stored - sum.dissipated - balance;
