@@ -545,3 +545,5 @@ def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.C
         == 1
     )
     assert "none: no test named so; there are 201A, 204 A" in capsys.readouterr().err
+    assert main(["qualify", "paper", "--history", "record.csv", "--test", "204"]) == 1
+    assert "tests 204: not allowed without a standard" in capsys.readouterr().err

@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from relay_contact.component import Component
+from relay_contact.files import RelayContactError
 from relay_contact.qualification.assessment import FEW, assess, chosen
 from relay_contact.qualification.relay import Relay, check_monitor, relays
 from relay_contact.qualification.results import Assessment, Finding, Tested
@@ -45,6 +46,8 @@ def qualify(
     # Workers and lists of relays import this package, too, and draw nothing.
     from relay_contact.qualification.page import write
 
+    if tests and not standard:
+        raise RelayContactError(f"tests {', '.join(tests)}: not allowed without a standard, whose tests they are")
     component, out = component or Component(), Path(out)
     described = Relay.read(relay, component)
     asked = Standard.read(standard or LIMITS)
