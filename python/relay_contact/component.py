@@ -351,10 +351,11 @@ class Contact:
 
     def references(self, *names: str) -> list[int]:
         """Give the numbers by which the component knows its variables."""
-        return [self.component.variables[name].valueReference for name in names]
+        return [self.component.variables[self.component.name(name)].valueReference for name in names]
 
     def set(self, name: str, value: Value) -> None:
         """Set a parameter or an input."""
+        name = self.component.name(name)
         kind = self.component.variables[name].type
         if kind == "String":
             if not isinstance(value, str):
@@ -403,7 +404,7 @@ class Contact:
 
     def get(self, name: str) -> float:
         """Give the value of any variable, of an enumeration its number."""
-        kind = self.component.variables[name].type
+        kind = self.component.variables[self.component.name(name)].type
         read = getattr(self.fmu, f"get{'Integer' if kind == 'Enumeration' else kind}")
         return float(read(self.references(name))[0])
 

@@ -198,7 +198,11 @@ def test_instances_serve_one_run_after_another() -> None:
     assert len(COMPONENT.idle) == max(idle, 2)
     contact = COMPONENT.started()
     with contact:
-        assert contact.get("contact.force") > 0
+        assert contact.get("contact.force") == contact.get("contact_force") > 0
+        contact.set("base_acceleration", 50.0)
+        assert contact.drive([0.0, 1e-4], {"base_acceleration": [50.0, 0.0]}, ["contact_force"])["contact_force"] > 0
+        with pytest.raises(RelayContactError, match=r"contact.farce: no such variable; did you mean contact.force"):
+            contact.real("contact.farce")
     with pytest.raises(AttributeError):
         contact.get("contact.force")
 
