@@ -166,9 +166,8 @@ impl Simulation {
     pub fn go_on_from(&mut self, motion: &Motion) {
         *self.motion = *motion;
         self.workspace.events.forget_after(f64::NEG_INFINITY);
-        if let Some(event) = motion.event_ahead() {
-            self.workspace.events.record(event);
-        }
+        let events = &mut self.workspace.events;
+        motion.events_ahead().for_each(|event| events.record(event));
     }
 
     /// Openings and closings within the last communication step, at most a thousand, and the number of others. None

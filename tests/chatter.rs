@@ -213,7 +213,7 @@ fn a_step_that_ends_with_the_integrators_own_has_the_extremes_of_it() {
     let mut openings = 0;
     while openings < 2 {
         let time = simulation.time();
-        let ahead = simulation.motion().event_ahead();
+        let ahead = simulation.motion().events_ahead().next();
         let Some(event) = ahead.filter(|event| !event.closes) else {
             simulation.step(&Inputs::default(), time, 1e-6).unwrap();
             continue;

@@ -5,7 +5,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::{Event, Simulation};
-use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput, VARIABLES};
 use testing::near;
 use testing::scenes::{self, accelerated, at_rest, force_scale, largest_difference};
 
@@ -213,6 +213,36 @@ fn a_generator_that_starts_late_wakes_the_contact_in_time() {
         let [late, prompt] = [&late, &prompt].map(|simulation| simulation.real(RealOutput::ContactForce));
         // At 1234 s time has a spacing of 2e-13 s, and the force changes by some 1e3 N/s.
         assert!((late - prompt).abs() < 1e-6 * prompt, "{late} {prompt}");
+    }
+}
+
+/// Bad input loses nothing: after a step that fails the motion is where it was, and goes on as if it had not been asked for.
+#[test]
+fn a_step_that_fails_leaves_the_motion_as_it_was() {
+    let mut simulation = Simulation::new(&shaken(400.0, 1e-6), &Inputs::default(), 0.0).unwrap();
+    let outputs = |simulation: &Simulation| -> Vec<_> {
+        let values = VARIABLES.iter().filter_map(|variable| simulation.output(variable));
+        values.map(f64::to_bits).collect()
+    };
+    let size = 1.3e-5;
+    for k in 0..100 {
+        let time = f64::from(k) * size;
+        simulation.step(&Inputs::default(), time, size).unwrap();
+        if k % 9 != 8 {
+            continue;
+        }
+        let unasked = simulation.clone();
+        let (pressed, thrown) = (accelerated(1e3, 0.0), accelerated(0.0, 1e305));
+        simulation.step(&thrown, simulation.time(), size).unwrap_err();
+        assert_eq!(outputs(&simulation), outputs(&unasked), "{k}");
+        let mut others = [simulation.clone(), unasked];
+        for (next, inputs) in [Inputs::default(), pressed, Inputs::default()].iter().enumerate() {
+            let [found, expected] = others.each_mut().map(|simulation| {
+                simulation.step(inputs, simulation.time(), size).unwrap();
+                (outputs(simulation), simulation.events().0.copied().collect::<Vec<_>>())
+            });
+            assert_eq!(found, expected, "{k} {next}");
+        }
     }
 }
 

@@ -330,7 +330,7 @@ fn tongues_are_the_cantilever_beyond_the_fork() {
     let beyond = spring(12e-3, [3.5e-3, 1.1e-4], 4e-3, None);
     let [all, tongues] = [forked, beyond].map(|segments| {
         scene.spring = spring_file("spring.toml", Shape::Segments(segments));
-        Model::new(&scene, 0.0).unwrap().modes.to_vec()
+        Model::new(&scene, 0.0).unwrap().modes
     });
     let against = all.iter().filter(|mode| mode.tip * mode.parallel < 0.0);
     for (n, (found, expected)) in against.zip(&tongues).take(4).enumerate() {

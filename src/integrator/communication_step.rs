@@ -184,9 +184,11 @@ fn step_by<const EXTREMES: bool>(
         go_ahead(model, motion, workspace, until, extremes.as_mut())?;
     } else {
         workspace.former.end = motion.end;
-        if ahead {
-            go_back(model, motion, workspace)?;
-        }
+        let gone_back = if ahead {
+            go_back(model, motion, workspace)
+        } else {
+            Ok(())
+        };
         // One after a time without changes is none that recurs.
         let driven = !ahead && motion.size > 0.0;
         let steps = Steps::Exactly {
@@ -195,10 +197,11 @@ fn step_by<const EXTREMES: bool>(
             recurs: !driven || size == motion.size,
             driven,
         };
-        let done = advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut());
+        let done = gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut()));
         done.inspect_err(|_| {
             motion.end = workspace.former.end;
             workspace.events.forget_after(since);
+            motion.events_ahead().for_each(|event| workspace.events.record(event));
         })?;
         (motion.end.displacements, motion.end.time) = (displacements, until);
         motion.start = motion.end;
@@ -235,12 +238,11 @@ fn check_size(time: f64, size: f64) -> Result<(), StepError> {
 /// inputs.
 ///
 /// # Errors
-/// A [`StepError`] where that fails; the motion is then unchanged.
+/// A [`StepError`] where that fails.
 fn go_back(model: &Model, motion: &mut Motion, workspace: &mut Workspace) -> Result<(), StepError> {
     motion.end = motion.start;
     let until = motion.time;
-    let done = go_on(model, &mut motion.end, workspace, motion.drive, until);
-    done.inspect_err(|_| motion.end = workspace.former.end)?;
+    go_on(model, &mut motion.end, workspace, motion.drive, until)?;
     workspace.events.forget_after(until);
     Ok(())
 }

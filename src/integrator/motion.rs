@@ -170,15 +170,19 @@ impl Motion {
             && (start == end && end.time == *time || start.time < end.time && *time <= end.time)
     }
 
-    /// The opening or closing that the integrator has located beyond the communication point.
-    pub fn event_ahead(&self) -> Option<Event> {
-        let mut links = self.start.links.iter().zip(&self.end.links).enumerate();
-        let switched = links.find(|(_, (start, end))| start.closed != end.closed);
-        let ahead = switched.filter(|_| self.end.time > self.time);
-        ahead.map(|(index, (_, end))| Event {
-            time: self.end.time,
-            closes: end.closed,
-            link: index,
+    /// Openings and closings that the integrator has located beyond the communication point: of each link the last ones.
+    pub fn events_ahead(&self) -> impl Iterator<Item = Event> {
+        let links = self.end.links.iter().enumerate();
+        links.flat_map(move |(link, at)| {
+            let mut last = [(at.last_opening, false), (at.last_closing, true)];
+            if !at.closed {
+                last.reverse();
+            }
+            let ahead = move |(instant, closes): (Option<f64>, bool)| {
+                let time = instant.filter(|time| *time > self.time)?;
+                Some(Event { time, closes, link })
+            };
+            last.into_iter().filter_map(ahead)
         })
     }
 
