@@ -120,6 +120,24 @@ fn the_preload_of_both_follows_from_beam_formulas() {
     }
 }
 
+/// Twins part at the same instant, which may be located before the communication point reaches it.
+#[test]
+fn a_motion_set_again_keeps_the_events_of_both() {
+    let mut plain = Simulation::new(&pair(shaken(500.0, 900.0)), &Inputs::default(), 0.0).unwrap();
+    let (mut other, mut count) = (plain.clone(), 0);
+    for _ in 0..2000 {
+        let motion = *other.motion();
+        other.go_on_from(&motion);
+        let [expected, found] = [&mut plain, &mut other].map(|simulation| {
+            simulation.step(&Inputs::default(), simulation.time(), 2e-6).unwrap();
+            simulation.events().0.copied().collect::<Vec<_>>()
+        });
+        assert_eq!(found, expected);
+        count += found.len();
+    }
+    assert!(count >= 8, "{count}");
+}
+
 /// Force, resistance, and interruptions of contacts that open at different times, against what each of 250,000 instants says.
 #[test]
 fn the_circuit_is_interrupted_while_both_are_open() {
