@@ -215,7 +215,7 @@ def test_what_a_search_has_missed_is_found_at_the_level_of_the_test() -> None:
     own.weakest["sine"] = 1000.0, 1.2, [CLOSED]
     shaken = judgement.vibration(own, tests[0], FEW)[0][CONTACT]
     assert shaken.factor <= 1
-    assert "fails at the level of the test where linear theory does not expect it" in shaken.limits
+    assert "fails at the level of the test where linear theory predicts no failure" in shaken.limits
     part, decides, piece = own.middle["random"]
     linear = own.linear(own.specimen.response, RANDOM)
     failing = scaled(RANDOM, 1.02 * part * linear)

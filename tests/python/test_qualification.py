@@ -182,7 +182,7 @@ def test_random_by_rice_on_the_exact_beam(paper: Assessment) -> None:
     # Of the linear theory; the response is right to 1e-3, 10 us add (pi 1e-5 mean)^2 / 2 = 5e-4.
     assert part.linear == pytest.approx(SPECIMEN.force / dip, rel=3e-3)
     # Of the rms, which is told, by Rice for a mean frequency of 500 to 1500 Hz.
-    told = float(tested.first.limits.rpartition("; ")[2].split()[0])
+    told = float(tested.first.limits.rpartition("its rms is ")[2].split()[0])
     assert dip / SPECIMEN.force / told == pytest.approx(5.3, abs=0.1)
     # The component itself, which simulates the dips: the contact is linear until it opens.
     assert part.margin == pytest.approx(part.linear, rel=5e-3)
@@ -361,19 +361,22 @@ def test_an_interrupted_assessment_continues_with_the_same_bytes(
     wanted: Any = {"out": tmp_path, "tests": SHOCKS, "quick": True, "component": COMPONENT, "workers": 1}
     run = judgement.tested
     begun: list[str] = []
+    most = [1]
 
     def killed(position: Any, test: Any, points: int) -> Finding:  # noqa: ANN401
         begun.append(test.name)
-        if len(begun) == 2:
+        if len(begun) > most[0]:
             raise KilledError
         return run(position, test, points)
 
     monkeypatch.setattr(assessment, "tested", killed)
     with pytest.raises(KilledError):
         qualify(two_models, "MIL-PRF-28776", **wanted)
+    begun.clear()
+    most[0] = 3
     qualify(two_models, "MIL-PRF-28776", **wanted)
     # The first is not run again; then the other model.
-    assert begun == ["shock, 213 A", "shock, 213 C", "shock, 213 C", "shock, 213 A", "shock, 213 C"]
+    assert begun == ["shock, 213 C", "shock, 213 A", "shock, 213 C"]
     names = sorted(path.relative_to(whole) for path in whole.rglob("*") if path.is_file())
     assert len(names) == 7
     for name in names:
