@@ -1,6 +1,6 @@
 //! The promise of `solver.tolerance` on random plausible relays ([`testing::relays`]): contact force and extremes are right
 //! to the tolerance, relative to the larger of the force scale and the largest force so far. The reference is the same
-//! relay at a hundredth of its tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
+//! relay at a thousandth of its tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
 //! others, at the tightest tolerance.
 
 use relay_contact::scene::{Scene, Solver};
@@ -17,9 +17,9 @@ type Draw = fn(u64) -> Relay;
 /// Relays judged of each kind.
 const COUNT: u64 = 40;
 
-/// Tolerance of a reference over that of its relay: at the tightest one it is the same to a hundredth of the tolerance, but a few
+/// Tolerance of a reference over that of its relay: at the tightest one it is the same to a thousandth of the tolerance, but a few
 /// relays take a hundred times as long.
-const PART: f64 = 1e-2;
+const PART: f64 = 1e-3;
 
 #[test]
 fn relays_keep_their_tolerance_or_say_that_they_may_not() {
@@ -160,7 +160,7 @@ fn what_grows_beyond_the_tolerance_is_not_silent() {
         // Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant.
         (kinds::any, &[10_731, 10_795, 12_630]),
         // In slip that is unstable errors grow with its vibration, far faster than by blows, and in a contact that never opens, too.
-        (kinds::friction, &[40_070, 40_330, 40_508]),
+        (kinds::friction, &[40_070, 40_317, 40_330, 40_508]),
     ] {
         for &number in numbers {
             let judged = judge(number, draw, PART);
@@ -234,7 +234,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
         (
             kinds::friction,
             &[
-                40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 41_276, 41_346, 40_345, 44_721,
+                40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346, 40_345, 44_721,
             ],
         ),
         (kinds::any, &[10_691, 10_861, 10_723, 14_154, 17_090, 19_909, 61_677]),

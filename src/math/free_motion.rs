@@ -167,3 +167,38 @@ impl FreeMotion {
         motions
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::simd::Separate;
+
+    #[test]
+    fn side_by_side_they_move_as_each_does_alone() {
+        let ratios = [0.0, 0.3, 0.999, 1.0, 1.001, 1.3, 4.0, 40.0];
+        for (k, t) in (0..400).map(|k| (k, 0.01 * 1.02_f64.powi(k))) {
+            for first in ratios {
+                for second in ratios {
+                    let omega = [1.0, 1.7];
+                    let squares = omega.map(|omega| omega * omega);
+                    let damping = [2.0 * first, 3.4 * second];
+                    let roots = Roots::of(&squares, &damping);
+                    let together = FreeMotion::side_by_side::<2, Separate>(&squares, &damping, &roots, &[t; 2]);
+                    for (one, (omega, damping)) in together.iter().zip(omega.into_iter().zip(damping)) {
+                        let alone = FreeMotion::new(omega * omega, damping, t);
+                        let wrong = [
+                            one.q_from_q - alone.q_from_q,
+                            omega * (one.q_from_v - alone.q_from_v),
+                            (one.v_from_q - alone.v_from_q) / omega,
+                            one.v_from_v - alone.v_from_v,
+                        ];
+                        // Angles and exponents are rounded.
+                        let rounding = 8.0 * f64::EPSILON * (1.0 + omega * t);
+                        let kept = wrong.iter().all(|wrong| wrong.abs() <= rounding);
+                        assert!(kept, "{k} {first} {second}: {wrong:?}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -188,9 +188,8 @@ impl Known {
         Simulation::new(&self.scene, &self.inputs, 0.0).unwrap().real(output)
     }
 
-    /// Other values of a known to try; some may not fit. Of a pair the second instead of the first.
-    fn others(&self, variable: &Variable) -> Vec<[f64; 2]> {
-        let alone = |value: f64| [value; 2];
+    /// Other values of a known to try; some may not fit.
+    fn others(&self, variable: &Variable) -> Vec<f64> {
         let near = |value: f64| {
             let Variable { min, max, .. } = *variable;
             let step = if value == 0.0 {
@@ -198,27 +197,23 @@ impl Known {
             } else {
                 1e-3 * value
             };
+            // Some ends of a range do not fit.
             let inside = 1e-3 * (max - min);
-            vec![
-                alone(value + step),
-                alone(value - step),
-                [min, min + inside],
-                [max, max - inside],
-            ]
+            vec![value + step, value - step, min, max, min + inside, max - inside]
         };
         match variable.group {
             Group::RealInput(input) => near(self.inputs.real(input)),
             Group::RealParameter(parameter) => near(self.scene.real(parameter)),
             Group::IntegerParameter(parameter) => {
                 let value = f64::from(self.scene.integer(parameter));
-                vec![alone(value + 1.0), alone(value + 10.0)]
+                vec![value + 1.0, value + 10.0]
             }
             Group::EnumerationParameter(parameter) => choices(parameter)
                 .iter()
-                .map(|(_, number)| alone(f64::from(*number)))
+                .map(|(_, number)| f64::from(*number))
                 .collect(),
-            Group::BooleanParameter(parameter) => vec![alone(f64::from(u8::from(!self.scene.boolean(parameter))))],
-            Group::StringParameter(_) => vec![alone(1.0)],
+            Group::BooleanParameter(parameter) => vec![f64::from(u8::from(!self.scene.boolean(parameter)))],
+            Group::StringParameter(_) => vec![1.0],
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => vec![],
         }
     }
@@ -258,13 +253,9 @@ fn moved_in(scenes: impl Iterator<Item = Values>) -> Pairs {
         let base = Known::with(&values);
         let before = base.unknowns().unwrap_or_else(|| panic!("{values:?} do not fit"));
         for known in &VARIABLES {
-            let unknowns = |other: f64| {
+            for other in base.others(known) {
                 let mut changed = base.clone();
-                changed.set(known, other).ok()?;
-                changed.unknowns()
-            };
-            for [other, instead] in base.others(known) {
-                let Some(after) = unknowns(other).or_else(|| unknowns(instead)) else {
+                let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else {
                     continue;
                 };
                 let moved = before.iter().filter(|(name, bits)| after[*name] != **bits);

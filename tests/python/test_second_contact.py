@@ -41,7 +41,7 @@ MOTIONS: dict[str, tuple[Values, tuple[float, float], float]] = {
 
 
 # Places at which each step is looked at for its smallest gap.
-PLACES = 40
+PLACES = 100
 
 
 def solved(name: str, places: int, tolerance: float) -> tuple[Course, Reference]:

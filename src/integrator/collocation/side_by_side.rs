@@ -209,3 +209,70 @@ fn take(response: &mut Pair<Lanes>, these: [bool; LANES], from: &Pair<Lanes>) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::modal_response::ModeOverStep;
+    use crate::integrator::collocation::polynomial::LONG_BY_TIME;
+    use crate::math::nodal::{LONG, dot};
+    use crate::math::simd::Separate;
+
+    /// Modes with these roots of `omega^2` times the step, and damping ratios.
+    fn modes(h: f64, roots: [(f64, f64); LANES]) -> [Mode; LANES] {
+        roots.map(|(omega_h, ratio)| Mode {
+            omega_squared: (omega_h / h).powi(2),
+            damping: 2.0 * ratio * omega_h / h,
+            tip: 1.0,
+            participation: 1.0,
+            rotation: 1.0,
+            ..Mode::default()
+        })
+    }
+
+    #[test]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "every index runs over the fixed size of the arrays"
+    )]
+    fn they_move_as_each_does_alone() {
+        let h = 1e-4;
+        let collocation = &LONG_BY_TIME;
+        let values: [[f64; LONG]; 2] = [1.0, 3.0].map(|k| std::array::from_fn(|j| (k * (1.0 + j as f64)).sin()));
+        let both = values.map(|values| collocation.shapes.load::<Separate>(&values));
+        let factors = [[1.0, -2.0, 0.5, 3.0], [0.3, 1.0, -1.0, 2.0]];
+        let loads = Loads {
+            shapes: &collocation.shapes,
+            length: h,
+            polynomials: &both,
+            parts: &factors,
+        };
+        for roots in [
+            [(0.001, 0.0), (0.3, 0.1), (2.0, 1.0), (3.0, 0.9)],
+            [(6.8, 0.0), (25.0, 0.3), (9.0, 1.0), (40.0, 1.01)],
+            [(4.0, 3.0), (9.0, 5.0), (2.0, 30.0), (1.0, 5.0)],
+            [(0.3, 0.1), (25.0, 0.3), (9.0, 5.0), (4.0, 0.3)],
+        ] {
+            let modes = modes(h, roots);
+            let starts = [ModeState { q: 1e-9, v: 1e-5 }; LANES];
+            let mut ends = [ModeState::default(); LANES];
+            loads.moved::<Separate>(&modes, &starts, &mut ends);
+            for (i, mode) in modes.iter().enumerate() {
+                let over = ModeOverStep::new(mode.omega_squared, mode.damping, h);
+                let response = over.response::<LONG, Separate>(&collocation.nodes, &collocation.shapes);
+                let Pair { q, v } = response.at_end::<Separate>(&collocation.shapes);
+                let mut load = [0.0; LONG];
+                for (values, factors) in values.iter().zip(&factors) {
+                    add::<LONG, Separate>(&mut load, factors[i], values);
+                }
+                let free = FreeMotion::new(mode.omega_squared, mode.damping, h);
+                let q = free.q_from_q * 1e-9 + free.q_from_v * 1e-5 + h * h * dot::<LONG, Separate>(&q, &load);
+                let v = free.v_from_q * 1e-9 + free.v_from_v * 1e-5 + h * dot::<LONG, Separate>(&v, &load);
+                // Cancellation of the power series and of the derivatives, as in the test of the responses: twelve digits of
+                // the motion of a mode without spring under the load.
+                let errors = ((ends[i].q - q) / (h * h), (ends[i].v - v) / h);
+                assert!(errors.0.abs().max(errors.1.abs()) < 1e-11, "{roots:?} {i} {errors:?}");
+            }
+        }
+    }
+}
