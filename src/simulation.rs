@@ -165,9 +165,8 @@ impl Simulation {
     /// Continues from the state of a simulation of the same model.
     pub fn go_on_from(&mut self, motion: &Motion) {
         *self.motion = *motion;
-        self.workspace.events.forget_after(f64::NEG_INFINITY);
         let events = &mut self.workspace.events;
-        motion.events_ahead().for_each(|event| events.record(event));
+        events.replace_after(f64::NEG_INFINITY, motion.events_ahead());
     }
 
     /// Openings and closings within the last communication step, at most a thousand, and the number of others. None

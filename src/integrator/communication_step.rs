@@ -200,8 +200,7 @@ fn step_by<const EXTREMES: bool>(
         let done = gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut()));
         done.inspect_err(|_| {
             motion.end = workspace.former.end;
-            workspace.events.forget_after(since);
-            motion.events_ahead().for_each(|event| workspace.events.record(event));
+            workspace.events.replace_after(since, motion.events_ahead());
         })?;
         (motion.end.displacements, motion.end.time) = (displacements, until);
         motion.start = motion.end;

@@ -167,6 +167,7 @@ mod tests {
             assert_eq!(of_steps.size > 0.0, impulse.is_infinite());
         }
     }
+
     /// A mode that lasts, of another body, would hide what grows at a contact once its own have faded.
     #[test]
     fn a_deviation_that_has_faded_at_a_contact_begins_there_anew() {

@@ -65,7 +65,7 @@ impl Basis {
         Self {
             modes: model.modes.clone(),
             ports: model.ports.clone(),
-            axial: model.axial.as_deref().is_some(),
+            axial: model.axial.is_some(),
             rubbing: model.friction().map(|_| model.law.damping()),
             portable: matches!(model.simd, Simd::Portable),
         }
@@ -134,11 +134,7 @@ impl Sizes {
         Self {
             rows,
             responses: responses_before(model.ports.len()),
-            columns: if model.axial.as_deref().is_some() {
-                model.modes.len()
-            } else {
-                0
-            },
+            columns: if model.axial.is_some() { model.modes.len() } else { 0 },
             following: if model.friction().is_some() { S } else { 0 },
             ends: model.modes.len().div_ceil(LANES),
             of_port,

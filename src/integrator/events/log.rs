@@ -55,6 +55,12 @@ impl Events {
         self.list.retain(|event| event.time <= time);
     }
 
+    /// Puts others in the place of events after an instant (s).
+    pub(crate) fn replace_after(&mut self, time: f64, others: impl Iterator<Item = Event>) {
+        self.forget_after(time);
+        others.for_each(|event| self.record(event));
+    }
+
     /// Events up to an instant (s).
     pub fn until(&self, time: f64) -> impl Iterator<Item = &Event> {
         self.list.iter().filter(move |event| event.time <= time)
