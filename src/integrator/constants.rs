@@ -36,6 +36,11 @@ pub const GROWING: f64 = 1.5;
 /// Pinned: × 500, `a_digit_costs_less_than_half_as_much_again`.
 pub const WORTH: f64 = 2.0;
 
+/// What polynomials through the nodes of a long step miss at its start of the root of the time since a closing, in powers of the size
+/// of the Bernstein ellipse through the closing, 1. From their interpolation of the root: 0.14 to 0.22. Pinned: × 2,
+/// `long_steps_after_a_closing_miss_as_much_of_a_root_as_they_may`.
+pub const MISSED_ROOT: f64 = 0.2;
+
 /// Length that a long step reaches at most, in short ones, 1. Observed. A leap after a closing has to reach farther to spare steps.
 /// Pinned: × 1e6, `a_blow_takes_few_steps`.
 pub const LONGER: f64 = 16.0;

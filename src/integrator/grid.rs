@@ -65,6 +65,11 @@ impl Grid {
         }
     }
 
+    /// Largest ratio of a length to the one before it, 1.
+    pub fn spacing(&self) -> f64 {
+        if self.recurs { 2.0 } else { 1.5 }
+    }
+
     /// The next step from `time` (s), of at most about `requested` seconds, ending at the latest at `corner` (s), the
     /// next discontinuity of the excitation.
     pub fn target(&self, requested: f64, time: f64, corner: Option<f64>) -> Target {

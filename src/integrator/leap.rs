@@ -1,9 +1,9 @@
-//! Leaps: first steps after a closing, by the root of the time since.
+//! After a closing: leaps, first steps by the root of the time since, and how far polynomials of time follow it.
 
 use crate::error::StepError;
 use crate::integrator::collocation::polynomial::{LONG_BY_ROOT, LONG_BY_TIME};
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::LONGER;
+use crate::integrator::constants::{LONGER, MISSED_ROOT, WORTH};
 use crate::integrator::grid::{Target, round_down};
 use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
 use crate::integrator::stepper::Stepper;
@@ -33,6 +33,18 @@ impl Stepper<'_> {
         let possible = longest.min(self.model.longest_step(*time)).min(remaining);
         let length = round_down(lengths.leap.min(possible));
         (length >= least && *time + length < corner).then_some(length)
+    }
+
+    /// Length of a step with many nodes whose polynomials follow the force of a contact, which goes as the root of the time since it
+    /// closed, s.
+    pub(super) fn smooth(&self) -> f64 {
+        let Some(closing) = self.state.last_closing() else {
+            return f64::INFINITY;
+        };
+        let links = self.model.links.iter().zip(&self.state.links);
+        let closed = links.filter(|(link, at)| at.closed && link.contact().is_some());
+        let force = closed.fold(0.0, |most, (_, at)| at.force.max(most));
+        (self.state.time - closing) * reach(force / self.model.tolerance.force)
     }
 
     /// One step over `length` (s) after a closing, by the root of the time since: accepted, or to be tried again with another length.
@@ -71,9 +83,41 @@ impl Stepper<'_> {
         for at in &mut self.state.links {
             at.course = parabola_in_time(&at.course);
         }
+        // Nor does a short step reach as far as a long one.
+        let short = self.smooth() / WORTH;
         let lengths = &mut self.state.lengths;
         lengths.leap = StepOutcome::accepted(length, lengths.leap, growth::<LONG>(ratio)).length;
-        lengths.short = length;
+        lengths.short = short;
         Ok(())
+    }
+}
+
+/// The longest step with many nodes, in times since a closing, whose polynomials follow a force that goes as the root of that time.
+/// The `accuracy` is the part of the force that they may miss at the start of the step, inverted. At the most [`WORTH`].
+fn reach(accuracy: f64) -> f64 {
+    let ellipse = (MISSED_ROOT * accuracy).powf(1.0 / LONG as f64).max(1.0);
+    (4.0 * ellipse / (ellipse - 1.0).powi(2)).min(WORTH)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::nodal::dot;
+    use crate::math::simd::Separate;
+
+    #[test]
+    fn long_steps_after_a_closing_miss_as_much_of_a_root_as_they_may() {
+        for exponent in 3..12 {
+            let accuracy = 10_f64.powi(exponent);
+            let length = reach(accuracy);
+            let root = LONG_BY_TIME.nodes.map(|x| (1.0 + length * x).sqrt());
+            let missed = (1.0 - dot::<LONG, Separate>(&root, &LONG_BY_TIME.at_start)).abs();
+            // The polynomials miss 0.14 to 0.22 of the power of the ellipse.
+            assert!(missed * accuracy <= 1.1, "{accuracy:e}: {length} misses {missed:e}");
+            assert!(
+                length == WORTH || missed * accuracy > 0.7,
+                "{accuracy:e}: {length} misses {missed:e}"
+            );
+        }
     }
 }

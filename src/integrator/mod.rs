@@ -98,7 +98,8 @@
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there. A blow makes it a
 //! hundred times larger, so at an opening it has to be below [`constants::AT_EVENT`] of the error allowed in a step. An estimate below
 //! what rounding makes of the motion ([`constants::MOTION_ROUNDING`]) counts as small ([`constants::ROUNDED`]): no shorter step reduces
-//! it. An error of what is read inside is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]).
+//! it. An error of what is read inside is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]); below that,
+//! the next step has the next length of the grid.
 //!
 //! # Step size control
 //!
@@ -108,8 +109,9 @@
 //! Step ends lie on a grid: binary fractions of the communication step where it is integrated to its end, and lengths of 1 and 1.5
 //! times powers of two where the integrator runs ahead, and off that grid after an event; the generator's corners (start, end,
 //! crossover) end a step. After a closing the force is smooth in the logarithm of the time since: the next step may be longer in the
-//! ratio in which that time grows. A step is never longer than a quarter of the generator's shortest period, nor than
-//! `solver.maximumStep`.
+//! ratio in which that time grows, up to where its polynomials follow a root of that time to the tolerance
+//! ([`leap`]). A rejected step beyond an opening is tried again up to there. A step is never longer than a quarter of
+//! the generator's shortest period, nor than `solver.maximumStep`.
 //!
 //! Work is counted and bounded per communication step ([`workspace::WORK`]): beyond it the step ends with an error that
 //! names the time.

@@ -8,14 +8,14 @@ use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::commit::commit;
 use crate::integrator::constants::{
-    AFTER_BLOW, DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MOTION_ROUNDING, NEAR_BLOW, ROUNDED,
+    AFTER_BLOW, DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MOTION_ROUNDING, NEAR_BLOW, ROUNDED, SAFETY,
 };
 use crate::integrator::energy::{balance, conservation};
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::events::{Event, Locator};
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::recorder::Recorder;
-use crate::integrator::step_length::{StepOutcome, doubles};
+use crate::integrator::step_length::{StepOutcome, error_of_growth};
 use crate::integrator::transition;
 use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
 use crate::math::nodal::{LONG, Nodal, SHORT, end};
@@ -132,17 +132,18 @@ impl Stepper<'_> {
             // Not `max`, which would hide NaN.
             if ratio < inside { inside } else { ratio }
         });
-        let fails = ratio > 1.0 && (closed || inside < 1.0);
-        // What does not shrink with the step keeps one that is far too short from growing to the next length of the grid.
         let of_inside = closed && ratio == inside;
-        let stays = of_inside && ratio <= 1.0 && !doubles::<S>(ratio);
         let (error, rounding) = if of_inside {
             (inside * model.tolerance.force, FREE_ROUNDING)
         } else {
             (trial.error.total, MOTION_ROUNDING)
         };
+        let fails = ratio > 1.0 && (closed || inside < 1.0);
+        // What does not shrink with the step would keep one that is far too short from growing to the next length of the grid.
+        let next = error_of_growth::<S>(self.grid.spacing() / SAFETY);
+        let stays = of_inside && ratio <= 1.0 && ratio > next;
         if (fails || stays) && error <= of_rounding::<S>(model, self.state, trial, rounding) {
-            [ROUNDED; 2]
+            [if fails { ROUNDED } else { next }; 2]
         } else {
             [ratio, own]
         }

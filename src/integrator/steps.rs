@@ -68,9 +68,7 @@ impl Stepper<'_> {
         }
         let remaining = self.grid.remaining();
         let closed = self.state.is_closed();
-        let closing = self.state.last_closing();
-        let smooth = closing.map(|closing| self.state.time - closing);
-        let proposal = self.state.lengths.propose(closed, smooth, remaining);
+        let proposal = self.state.lengths.propose(closed, self.smooth(), remaining);
         let outcome = match proposal {
             Proposal::Short(length) => self.advance_with::<SHORT>(length)?,
             Proposal::Long(length) => self.advance_with::<LONG>(length)?,
@@ -118,6 +116,9 @@ impl Stepper<'_> {
             let shrink = if self.changes_now() {
                 // Where the force bends the error is of order one.
                 (SAFETY / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
+            } else if let Some(opening) = self.first_opening(trial, target).filter(|_| ratio.is_finite()) {
+                // The law's continuation far beyond it says nothing of the error up to there.
+                opening.clamp(LEAST_SHRINK, MOST_SHRINK)
             } else {
                 shrinkage::<S>(ratio)
             };
@@ -164,6 +165,18 @@ impl Stepper<'_> {
             });
         }
         Ok(StepOutcome::accepted(target.length, requested, growth))
+    }
+
+    /// Where in a trial the first contact may open, 0 to 1.
+    fn first_opening<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
+    where
+        Workspace: Rooms<S>,
+    {
+        let locator = self.locator(trial, target.length);
+        let closed = locator.whole.state.links.iter().enumerate().filter(|(_, at)| at.closed);
+        closed
+            .filter_map(|(index, _)| locator.first_open(index))
+            .reduce(f64::min)
     }
 
     /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or
