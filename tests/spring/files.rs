@@ -90,6 +90,8 @@ fn a_scene_names_its_spring_relative_to_itself() {
     assert_eq!(Model::new(&file.scene, 0.0).unwrap().remarks(), []);
 }
 
+type Spoil = fn(&mut Segments);
+
 /// A spring that a program makes is checked as one of a file is, with the name that it was given.
 #[test]
 fn a_spring_that_was_not_read_is_checked_too() {
@@ -103,13 +105,15 @@ fn a_spring_that_was_not_read_is_checked_too() {
         ..Segments::default()
     };
     let refusal = |shape: Shape| {
-        let mut scene = Scene::default();
-        scene.fixed_spring = spring_file("own.toml", shape);
+        let scene = Scene {
+            fixed_spring: spring_file("own.toml", shape),
+            ..Scene::default()
+        };
         Model::new(&scene, 0.0).map_or_else(|error| error.to_string(), |_| String::new())
     };
     assert_eq!(refusal(Shape::Segments(good.clone())), "");
     #[rustfmt::skip]
-    let cases: [(fn(&mut Segments), &str); 8] = [
+    let cases: [(Spoil, &str); 8] = [
         (|spring| spring.segments[1].length = -0.01, "length = -0.01 m"),
         (|spring| spring.segments[1].length = f64::NAN, "length = NaN m"),
         (|spring| spring.segments[0].width[1] = 0.0, "width_end = 0 m"),
