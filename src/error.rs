@@ -99,11 +99,16 @@ pub enum SceneError {
     },
     /// Modes of a spring that are more compliant than the whole spring.
     #[error(
-        "compliance = {} m/N: not allowed, allowed is {} m/N or more, which the modes hold alone (sum of contact^2/omega^2); \
+        "{name} = {} m/N: not allowed, allowed is {} m/N or more, which the modes hold alone (sum of {place}^2/omega^2); \
          modes and compliance contradict each other",
         number(*compliance), number(*held)
     )]
-    Contradiction { compliance: f64, held: f64 },
+    Contradiction {
+        name: &'static str,
+        compliance: f64,
+        place: &'static str,
+        held: f64,
+    },
     /// Any of these, with the entry of a list that it is in.
     #[error("{entry}: {error}")]
     InEntry { entry: String, error: Box<SceneError> },

@@ -322,11 +322,22 @@ impl<'a> Pressed<'a> {
             return Ok(());
         }
         let Scene { friction, tip, .. } = self.scene;
+        // Each is linear in the product of coefficient and height, and where there is none the springs jam in none.
         let statics = &self.springs.moving.statics;
+        let rubbed = friction.coefficient * tip.contact_height;
+        let alone = statics.tip_compliance(n);
+        let both = alone + self.springs.fixed.as_ref().map_or(0.0, Beside::tip_compliance);
+        let limit = |free: f64, now: f64| {
+            if now > 0.0 {
+                f64::INFINITY
+            } else {
+                rubbed * free / (free - now)
+            }
+        };
         Err(SceneError::Jams {
             coefficient: friction.coefficient,
             height: tip.contact_height,
-            limit: statics.tip_compliance(n) / statics.moment_compliance(n) / friction.initial.abs(),
+            limit: limit(alone, compliance).min(limit(both, compliance + self.give)),
             initial: friction.initial,
         })
     }

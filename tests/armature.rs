@@ -2,6 +2,8 @@
 //! way between the stops, by closed forms. Its bounces in a shock are compared with another solution in
 //! `tests/python/test_relay_parts.py`.
 
+use std::f64::consts::TAU;
+
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
@@ -247,5 +249,31 @@ fn an_armature_that_touches_nothing_does_not_change_what_is_announced() {
             told == 1.0 || error < told.max(tolerance),
             "{tolerance:e}: {error:e}, told {told:e}"
         );
+    }
+}
+
+/// Drawn by its magnet to where the return spring holds it, out of reach of all else, it is a mass on that spring and on the negative
+/// stiffness of the magnet, `k - 2 F / (g_0 + g)`.
+#[test]
+fn the_magnet_softens_an_armature_that_floats() {
+    let mut scene = alone();
+    let given = &mut scene.armature;
+    (given.rest_position, given.core_position, given.mass) = (-1.03e-2, -1e-2, 2e-2);
+    (given.stiffness, given.return_force, given.hold_force) = (1.4e4, 0.0, 4.0);
+    let given = scene.armature;
+    for current in [1.0_f64, 0.8] {
+        let model = Simulation::new(&scene, &coil(current), 0.0).unwrap().model().clone();
+        let (place, drawn) = (model.preload.armature.place, model.preload.armature.magnet_force);
+        close(given.stiffness * (place - given.rest_position), drawn, 1e-9);
+        let gap = given.core_position - place;
+        close(
+            drawn,
+            given.hold_force * (current / (1.0 + gap / given.gap_constant)).powi(2),
+            1e-9,
+        );
+        let slope = 2.0 * drawn / (given.gap_constant + gap);
+        assert!(slope > 0.05 * given.stiffness && slope < given.stiffness, "{slope}");
+        let expected = ((given.stiffness - slope) / given.mass).sqrt() / TAU;
+        close(model.frequency, expected, 1e-9);
     }
 }

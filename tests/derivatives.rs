@@ -286,3 +286,55 @@ fn outputs_declared_as_continuous_have_a_derivative_and_no_others() {
         assert_eq!(rate, continuous.then_some(0.0), "{name} at the start");
     }
 }
+
+/// Where an input changes at each point an integration step ends there, and rates follow from the laws. Seen in the slopes before: a
+/// parabola through three values misses the slope at its end by less than what the last two slopes differ by.
+#[test]
+fn derivatives_with_friction_where_an_input_changes_are_slopes() {
+    const OUTPUTS: [RealOutput; 4] = [
+        RealOutput::ContactTangentialForce,
+        RealOutput::ContactSlip,
+        RealOutput::ContactSlipDistance,
+        RealOutput::FrictionEnergy,
+    ];
+    for damping in [8.063e-5, 0.0] {
+        let mut scene = rubbing(Scene::default());
+        (scene.contact.damping, scene.solver.tolerance) = (damping, 1e-10);
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut rows = Vec::new();
+        let size = 1e-5;
+        while simulation.time() < 2e-3 {
+            let start = simulation.time();
+            let inputs = accelerated(98.0 * (TAU * 1e3 * start).sin(), 0.0);
+            let mut before = simulation.clone();
+            simulation.step(&inputs, start, size).unwrap();
+            assert_eq!(simulation.state().time, simulation.time());
+            let read = |of: &Simulation| OUTPUTS.map(|output| (of.real(output), of.rate(output).unwrap()));
+            let three = [size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
+                before.step(&inputs, before.time(), step).unwrap();
+                read(&before)
+            });
+            rows.push((three, read(&simulation)));
+        }
+        for (n, output) in OUTPUTS.into_iter().enumerate() {
+            let greatest = |of: fn((f64, f64)) -> f64| rows.iter().map(|row| of(row.1[n]).abs()).fold(0.0, f64::max);
+            // Values are wrong by a share of the force that presses, five times what rubs; the parabola takes four of them.
+            let noise = 20.0 * scene.solver.tolerance * greatest(|at| at.0) / NEAR;
+            assert!(greatest(|at| at.1) > 100.0 * noise, "{output:?}");
+            let mut seen = [0, 0];
+            for (k, (three, now)) in rows.iter().enumerate() {
+                let slips = now[1].1 != 0.0;
+                if three.iter().any(|at| (at[1].1 != 0.0) != slips) {
+                    continue;
+                }
+                seen[usize::from(slips)] += 1;
+                let [first, second, last] = three.map(|at| at[n].0);
+                let slopes = [second - first, last - second].map(|difference| difference / NEAR);
+                let bend = slopes[1] - slopes[0];
+                let case = format_args!("{damping} s, {output:?} {k}, slips: {slips}");
+                near(case, now[n].1, slopes[1] + 0.5 * bend, bend.abs() + noise);
+            }
+            assert!(seen[0] > 20 && seen[1] > 20, "{seen:?}");
+        }
+    }
+}

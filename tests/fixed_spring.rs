@@ -4,12 +4,12 @@
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Mode, Model};
+use relay_contact::reference::{Mode, Model, reduced_modulus};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::rig::Rig;
-use testing::scenes::shaken;
+use testing::scenes::{shaken, supported};
 use testing::springs::{of_segments, segment, spring_file};
 use testing::{close, near};
 
@@ -144,4 +144,35 @@ fn the_fixed_contact_moves_as_its_outputs_say() {
         near(n, *now, before + 0.5 * step * (start + end), 1e-12);
     }
     assert!(furthest > 0.01 * overtravel, "{furthest}");
+}
+
+/// Pushed far and let come to rest, both springs and the contact share the way in proportion to what each gives per force.
+#[test]
+fn a_large_push_of_the_fixed_contact_bends_both_springs() {
+    let scene = on_spring(plain(1e-8), 0.5, 2.0);
+    let beam = &scene.beam;
+    let bending = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
+    let per_force = beam.length.powi(3) / (3.0 * bending);
+    let hertz = 4.0 / 3.0 * reduced_modulus(&scene.contact) * scene.contact.curvature_radius.sqrt();
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    for push in [1e-3, -1e-4] {
+        let before = simulation.motion().support().0;
+        let rate = (push - before) / 1e-2;
+        simulation
+            .step(&supported(before, rate), simulation.time(), 1e-2)
+            .unwrap();
+        simulation.step(&supported(push, 0.0), simulation.time(), 0.3).unwrap();
+        let force = simulation.real(RealOutput::ContactForce);
+        // That of the fixed contact has 4 times the stiffness.
+        let given = 1.25 * per_force * force + (force / hertz).powf(2.0 / 3.0);
+        close(push, given, scene.contact.overtravel + push, 1e-6);
+        close(
+            push,
+            simulation.real(RealOutput::TipDisplacement),
+            per_force * force,
+            1e-6,
+        );
+        let fixed = simulation.real(RealOutput::FixedDisplacement);
+        close(push, fixed, -0.25 * per_force * force, 1e-6);
+    }
 }

@@ -48,6 +48,13 @@ fn gripping(scene: &mut Scene, coefficient: f64, initial: f64) {
     scene.tip.contact_height = 0.01;
 }
 
+/// A fixed contact on the moving spring at half its thickness.
+fn on_soft_spring(scene: &mut Scene) {
+    let beam = &scene.beam;
+    let half = segment(beam.length, [beam.width; 2], [0.5 * beam.thickness; 2]);
+    scene.fixed_spring = spring_file("fixed.toml", of_segments([half]));
+}
+
 /// A spring given by a mode.
 fn with_mode(scene: &mut Scene, rotation: Option<f64>) {
     let given = GivenMode {
@@ -78,6 +85,11 @@ const FRICTION: &[Case] = &[
     // At two thirds of the length the moment of the friction force bends the spring back as far as the contact force bends it.
     (|scene, _| gripping(scene, 2.0, -1.0), &["friction.coefficient = 2 ", "0.01033"]),
     (|scene, _| gripping(scene, 2.0, 0.0), &[]),
+    // Friction the other way draws a fixed contact after it whose spring is 8 times softer: jammed from (c + 8 c) / (8 m - m) on,
+    // c / m two thirds of the length, 13.3 mm.
+    (|scene, _| { gripping(scene, 1.3, 1.0); on_soft_spring(scene); }, &[]),
+    (|scene, _| { gripping(scene, 1.4, 1.0); on_soft_spring(scene); }, &["friction.coefficient = 1.4 ", "0.01328", "initial = 1"]),
+    (|scene, _| { gripping(scene, 1.1, -1.0); on_soft_spring(scene); }, &["friction.coefficient = 1.1 ", "0.01033", "initial = -1"]),
 ];
 
 #[rustfmt::skip]

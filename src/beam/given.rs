@@ -64,16 +64,17 @@ impl Given {
         (self.modes.len() + self.residuals()).min(MAX_MODES)
     }
 
-    fn residuals(&self) -> usize {
+    /// Residual flexibilities among them.
+    pub fn residuals(&self) -> usize {
         if self.parallel_compliance > 0.0 { 2 } else { 1 }
     }
 
-    /// Up to `count` modes and the residual flexibility of each contact, if there is room.
+    /// Up to `count` modes, the residual flexibility of each contact among them.
     pub fn modes(&self, count: usize, (alpha, beta): Rayleigh) -> Vec<Mode> {
         let mut modes: Vec<_> = self
             .modes
             .iter()
-            .take(count.min(MAX_MODES - self.residuals()))
+            .take(count.min(MAX_MODES).saturating_sub(self.residuals()))
             .map(|mode| {
                 let omega_squared = mode.omega_squared();
                 let own = mode.damping.map(|ratio| 2.0 * ratio * omega_squared.sqrt());

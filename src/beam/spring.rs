@@ -134,6 +134,14 @@ impl Spring {
         }
     }
 
+    /// Residual flexibilities among its modes, where they are given.
+    pub fn residuals(&self) -> usize {
+        match &self.form {
+            Form::Uniform | Form::Segments(_) => 0,
+            Form::Modes(given) => given.residuals(),
+        }
+    }
+
     /// The highest frequency of the modes given, and that up to which a blow excites the spring, if it is higher, Hz.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
         match &self.form {

@@ -79,7 +79,7 @@ impl Springs {
     pub fn stiffness(&self) -> f64 {
         let moving = self.moving.section.tip_stiffness();
         match &self.fixed {
-            Some(fixed) => 1.0 / (1.0 / moving + fixed.spring.statics.tip_compliance(0.0)),
+            Some(fixed) => 1.0 / (1.0 / moving + fixed.tip_compliance()),
             None => moving,
         }
     }
@@ -120,8 +120,15 @@ impl Springs {
             fixed.map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
             tongues.map_or(0, |tongues| most(&|blow| tongues.spring.count(blow, tolerance))),
         ];
-        let instead = |count: usize| if count == 0 || asked == 0 { count } else { asked };
-        within(needed.map(instead), self.room())
+        let counts = if asked == 0 { needed } else { self.of_each(asked) };
+        within(counts, self.room())
+    }
+
+    /// So many modes of each spring that there is, beside its residual flexibilities.
+    fn of_each(&self, count: usize) -> Counts {
+        let of = |spring: &Spring| count + spring.residuals();
+        let beside = |own: &Option<Beside>| own.as_ref().map_or(0, |own| of(&own.spring));
+        [of(&self.moving), beside(&self.fixed), beside(&self.tongues)]
     }
 
     /// What modes left out do in a blow of the contact.
@@ -189,9 +196,7 @@ impl Springs {
 
     /// Modes for the lowest frequency of all.
     pub fn many_modes(&self, scene: &Scene, axial_force: f64) -> Option<Vec<Mode>> {
-        let others = [self.fixed.is_some(), self.tongues.is_some()];
-        let [fixed, tongues] = others.map(|has| if has { FREQUENCY_MODES } else { 0 });
-        let counts = within([FREQUENCY_MODES, fixed, tongues], self.room());
+        let counts = within(self.of_each(FREQUENCY_MODES), self.room());
         self.modes(scene, counts, axial_force).map(|basis| basis.modes)
     }
 }
@@ -227,7 +232,12 @@ impl Beside {
         let turned = tangential_share(&self.scene).map_or(0.0, |share| {
             share * self.scene.tip.contact_height * statics.moment_compliance(0.0)
         });
-        statics.tip_compliance(0.0) - turned
+        self.tip_compliance() - turned
+    }
+
+    /// The same without friction, m/N.
+    pub fn tip_compliance(&self) -> f64 {
+        self.spring.statics.tip_compliance(0.0)
     }
 
     /// Deflection without contact, m: zero without gravity.

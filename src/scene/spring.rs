@@ -285,10 +285,18 @@ impl Modes {
         let mut modes = self.modes.iter().copied();
         modes.try_for_each(|mut mode| check(mode.keys()))?;
         let of_parallel = self.held_by(|mode| mode.parallel.unwrap_or_default());
-        let parallel = self.parallel_compliance.map(|compliance| (compliance, of_parallel));
-        for (compliance, held) in [(self.compliance, self.held())].into_iter().chain(parallel) {
+        let parallel = self.parallel_compliance.unwrap_or(f64::INFINITY);
+        for (field, compliance, place, held) in [
+            (COMPLIANCE, self.compliance, "contact", self.held()),
+            (PARALLEL_COMPLIANCE, parallel, "parallel", of_parallel),
+        ] {
             if held > compliance * (1.0 + PRINTED) {
-                return Err(SceneError::Contradiction { compliance, held });
+                return Err(SceneError::Contradiction {
+                    name: field.name,
+                    compliance,
+                    place,
+                    held,
+                });
             }
         }
         Ok(())

@@ -148,7 +148,12 @@ fn modes(top: &Entry) -> Result<Modes, SceneError> {
             entry.fill(mode.keys()).map(|()| mode)
         })?,
     };
-    let place = top.value("compliance").map_or(0..0, |value| value.node.span());
-    top.at(&place, spring.check())?;
+    let checked = spring.check();
+    let key = match &checked {
+        Err(SceneError::Contradiction { name, .. }) => name,
+        _ => COMPLIANCE.name,
+    };
+    let place = top.value(key).map_or(0..0, |value| value.node.span());
+    top.at(&place, checked)?;
     Ok(spring)
 }

@@ -4,9 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use relay_contact::reference::Model;
+use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
-use relay_contact::scene::spring::{Segments, Shape, SpringFile};
+use relay_contact::scene::spring::{PointMass, Segments, Shape, SpringFile};
 use tempfile::NamedTempFile;
+use testing::springs::{mode, of_modes, segment, spring_file};
 
 /// What is read of a file of this text, and its path.
 fn read(text: &[u8]) -> (Result<SpringFile, String>, String) {
@@ -47,6 +49,8 @@ fn errors_in_a_spring_file_have_line_entry_and_range() {
         (format!("{SEGMENT}length = 3\n"), "5: not TOML: duplicate key"),
         (with("density = [[[1]]]\n"), "5: brackets inside each other: not allowed, allowed are 2"),
         ("compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 50\nparticipation = 0.01\n".to_owned(), "1: compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of contact^2/omega^2); modes and compliance contradict each other"),
+        ("compliance = 1\nparallel_compliance = 1e-3\n[[mode]]\nfrequency = 100\ncontact = 1\nparticipation = 0.01\nparallel = 50\n".to_owned(), "2: parallel_compliance = 0.001 m/N: not allowed, allowed is 0.006332573977646111 m/N or more, which the modes hold alone (sum of parallel^2/omega^2); modes and compliance contradict each other"),
+        ("compliance = nan\n[[mode]]\nfrequency = 100\ncontact = 1\nparticipation = 0.01\n".to_owned(), "1: compliance = NaN m/N: not allowed, allowed is 1e-9 to 1000000"),
         ("compliance = 1\n[[mode]]\nfrequency = 100\nparticipation = 0.01\n".to_owned(), "2: mode 1: contact: missing; expected a number"),
         ("compliance = 1\n[[segment]]\nlength = 3\n".to_owned(), "2: segment: no such key, allowed are title, compliance, parallel_compliance, mode"),
     ];
@@ -84,4 +88,63 @@ fn a_scene_names_its_spring_relative_to_itself() {
     assert_eq!(segments[1].thickness, [2e-4; 2]);
     assert_eq!((*contact_position, *clamp_stiffness), (Some(0.018), Some(1.2)));
     assert_eq!(Model::new(&file.scene, 0.0).unwrap().remarks(), []);
+}
+
+type Spoil = fn(&mut Segments);
+
+/// A spring that a program makes is checked as one of a file is, with the name that it was given.
+#[test]
+fn a_spring_that_was_not_read_is_checked_too() {
+    let good = Segments {
+        segments: vec![segment(0.01, [4e-3; 2], [2e-4; 2]); 2],
+        masses: vec![PointMass {
+            position: 0.02,
+            mass: 1e-6,
+            rotary_inertia: 0.0,
+        }],
+        ..Segments::default()
+    };
+    let refusal = |shape: Shape| {
+        let scene = Scene {
+            fixed_spring: spring_file("own.toml", shape),
+            ..Scene::default()
+        };
+        Model::new(&scene, 0.0).map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    assert_eq!(refusal(Shape::Segments(good.clone())), "");
+    #[rustfmt::skip]
+    let cases: [(Spoil, &str); 8] = [
+        (|spring| spring.segments[1].length = -0.01, "length = -0.01 m"),
+        (|spring| spring.segments[1].length = f64::NAN, "length = NaN m"),
+        (|spring| spring.segments[0].width[1] = 0.0, "width_end = 0 m"),
+        (|spring| spring.segments[0].thickness[0] = f64::INFINITY, "thickness_start = inf m"),
+        (|spring| spring.masses[0].position = 0.0201, "position = 0.0201 m: not allowed, allowed is 1e-6 to 0.02"),
+        (|spring| spring.masses[0].rotary_inertia = -1e-12, "rotary_inertia = -1e-12 kg.m2"),
+        (|spring| spring.contact_position = Some(0.021), "contact_position = 0.021 m: not allowed, allowed is 0.001 to 0.02"),
+        (|spring| spring.clamp_stiffness = Some(f64::NAN), "clamp_stiffness = NaN N.m/rad"),
+    ];
+    for (spoil, expected) in cases {
+        let mut spring = good.clone();
+        spoil(&mut spring);
+        let said = refusal(Shape::Segments(spring));
+        assert!(
+            said.starts_with("own.toml: ") && said.contains(expected),
+            "{expected:?} missing: {said}"
+        );
+    }
+    for (given, expected) in [
+        (mode(-1.0, 1.0, 0.0), "frequency = -1 Hz"),
+        (mode(100.0, f64::NAN, 0.0), "contact = NaN 1/sqrt(kg)"),
+        (mode(100.0, 1.0, 2.0), "participation = 2 sqrt(kg)"),
+        (
+            mode(100.0, 50.0, 0.0),
+            "compliance = 0.001 m/N: not allowed, allowed is 0.00633",
+        ),
+    ] {
+        let said = refusal(of_modes(1e-3, [given]));
+        assert!(
+            said.starts_with("own.toml: ") && said.contains(expected),
+            "{expected:?} missing: {said}"
+        );
+    }
 }

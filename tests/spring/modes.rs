@@ -1,12 +1,14 @@
 //! Springs of modes.
 
 use relay_contact::error::Remark;
-use relay_contact::reference::Model;
+use relay_contact::inputs::Inputs;
+use relay_contact::reference::{Model, reduced_modulus};
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
-use relay_contact::variables::ContactLawKind;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::{ContactLawKind, RealOutput};
 use testing::close;
-use testing::scenes::{forces, largest_difference, shaken};
+use testing::scenes::{course, forces, largest_difference, shaken, supported};
 use testing::springs::{mode, of_modes, segment};
 
 use super::{TAU, with};
@@ -170,4 +172,77 @@ fn each_mode_may_have_its_own_damping() {
     let beta = scene.beam.stiffness_damping;
     assert_eq!(first.damping, beta * first.omega_squared);
     assert!((second.damping / (0.06 * second.omega_squared.sqrt()) - 1.0).abs() < 1e-12);
+}
+
+/// A mode shaken at its frequency with the contact open: all that holds it is its damping, `q = g a / (c omega)`.
+#[test]
+fn mass_damping_limits_a_mode_at_its_resonance() {
+    let (frequency, contact, participation, acceleration) = (1000.0, 150.0, 5e-3, 10.0);
+    let mut scene = shaken(acceleration, frequency);
+    scene.contact.overtravel = -1e-3;
+    (scene.beam.mass_damping, scene.beam.stiffness_damping) = (400.0, 1e-5);
+    let scene = with(scene, of_modes(1e-3, [mode(frequency, contact, participation)]));
+    let omega = TAU * frequency;
+    let damping = 400.0 + 1e-5 * omega * omega;
+    let expected = contact * participation * acceleration / (damping * omega);
+    // 50 ms: what the start left is exp(-c t / 2) = 3e-9.
+    let (rows, _) = course(&scene, 1e-5, 5000, [RealOutput::TipDisplacement]);
+    let found = rows[4900..].iter().flatten().fold(0.0_f64, |most, y| most.max(y.abs()));
+    // A hundred instants a cycle miss the crest by up to (pi / 100)^2 / 2.
+    close("swing, m", found, expected, 6e-4);
+}
+
+/// Modes that move two equal contacts alike, and what each contact has beyond them in series with itself: in rest at the start, and
+/// after its support has moved.
+#[test]
+fn contacts_side_by_side_have_a_residual_compliance_each() {
+    let (held, rest) = (8e-4, 3e-4);
+    let displacement = TAU * 800.0 * f64::sqrt(held);
+    let given = GivenMode {
+        damping: Some(1.0),
+        parallel: Some(displacement),
+        ..mode(800.0, displacement, 5e-3)
+    };
+    let mut scene = with(Scene::default(), of_modes(held + rest, [given]));
+    scene.effects.parallel_contact = true;
+    scene.parallel.curvature_radius = scene.contact.curvature_radius;
+    let hertz = 4.0 / 3.0 * reduced_modulus(&scene.contact) * scene.contact.curvature_radius.sqrt();
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    for overtravel in [scene.contact.overtravel, scene.contact.overtravel + 1e-4] {
+        for output in [RealOutput::ContactForce, RealOutput::ParallelForce] {
+            let force = simulation.real(output);
+            let deflections = (2.0 * held + rest) * force + (force / hertz).powf(2.0 / 3.0);
+            close(format_args!("{output:?}"), deflections, overtravel, 1e-6);
+        }
+        simulation.step(&supported(0.0, 1e-2), simulation.time(), 1e-2).unwrap();
+        simulation.step(&supported(1e-4, 0.0), simulation.time(), 0.1).unwrap();
+    }
+}
+
+/// However many modes both springs have, all of them at rest give way as the files say: what there is no room for is in the residual
+/// compliance of each.
+#[test]
+fn springs_of_more_modes_than_there_is_room_for_keep_their_compliance() {
+    let given = |size: f64| {
+        let modes = (1..=100).map(|n| mode(500.0 * f64::from(n), size, 0.0));
+        let held: f64 = modes
+            .clone()
+            .map(|mode| mode.contact.powi(2) / mode.omega_squared())
+            .sum();
+        (1.3 * held, of_modes(1.3 * held, modes))
+    };
+    let [(moving, shape), (fixed, other)] = [given(100.0), given(50.0)];
+    let mut scene = with(Scene::default(), shape);
+    scene.fixed_spring = with(Scene::default(), other).spring;
+    for count in [0, 64] {
+        scene.solver.modes = count;
+        let model = Model::new(&scene, 0.0).unwrap();
+        let found = model
+            .modes
+            .iter()
+            .map(|mode| mode.tip.powi(2) / mode.omega_squared)
+            .sum();
+        // To rounding.
+        close(count, found, moving + fixed, 1e-12);
+    }
 }
