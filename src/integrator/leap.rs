@@ -95,7 +95,8 @@ impl Stepper<'_> {
 /// The longest step with many nodes, in times since a closing, whose polynomials follow a force that goes as the root of that time.
 /// The `accuracy` is the part of the force that they may miss at the start of the step, inverted. At the most [`WORTH`].
 fn reach(accuracy: f64) -> f64 {
-    let ellipse = (MISSED_ROOT * accuracy).powf(1.0 / LONG as f64).max(1.0);
+    // The eighth root, as there are eight nodes.
+    let ellipse = (MISSED_ROOT * accuracy).sqrt().sqrt().sqrt().max(1.0);
     (4.0 * ellipse / (ellipse - 1.0).powi(2)).min(WORTH)
 }
 
