@@ -116,9 +116,6 @@ impl Stepper<'_> {
             let shrink = if self.changes_now() {
                 // Where the force bends the error is of order one.
                 (SAFETY / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
-            } else if let Some(opening) = self.first_opening(trial, target).filter(|_| ratio.is_finite()) {
-                // The law's continuation far beyond it says nothing of the error up to there.
-                opening.clamp(LEAST_SHRINK, MOST_SHRINK)
             } else {
                 shrinkage::<S>(ratio)
             };
@@ -165,18 +162,6 @@ impl Stepper<'_> {
             });
         }
         Ok(StepOutcome::accepted(target.length, requested, growth))
-    }
-
-    /// Where in a trial the first contact may open, 0 to 1.
-    fn first_opening<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Option<f64>
-    where
-        Workspace: Rooms<S>,
-    {
-        let locator = self.locator(trial, target.length);
-        let closed = locator.whole.state.links.iter().enumerate().filter(|(_, at)| at.closed);
-        closed
-            .filter_map(|(index, _)| locator.first_open(index))
-            .reduce(f64::min)
     }
 
     /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or
