@@ -322,7 +322,7 @@ impl<'a> Pressed<'a> {
             return Ok(());
         }
         let Scene { friction, tip, .. } = self.scene;
-        // Each is linear in the product of coefficient and height, and where there is none the springs jam in none.
+        // Both compliances fall linearly with the product of coefficient and height.
         let statics = &self.springs.moving.statics;
         let rubbed = friction.coefficient * tip.contact_height;
         let alone = statics.tip_compliance(n);

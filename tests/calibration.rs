@@ -120,3 +120,25 @@ fn a_blow_takes_few_steps() {
     let steps = of(IntegerOutput::SolverSteps) + of(IntegerOutput::SolverRejectedSteps);
     assert!(of(IntegerOutput::ChatterCount) > 15 && steps < 20 * 20, "{steps}");
 }
+
+/// A rejected step costs as much as one that is taken, and no result shows it.
+#[test]
+fn few_steps_are_rejected_at_any_tolerance() {
+    for (amplitude, frequency) in [(400.0, 1000.0), (700.0, 1700.0), (900.0, 400.0)] {
+        for damping in [1.0, 0.1, 0.01] {
+            for exponent in [2, 4, 6, 8, 10] {
+                let mut scene = shaken(amplitude, frequency);
+                scene.beam.stiffness_damping *= damping;
+                scene.solver.tolerance = 0.1_f64.powi(exponent);
+                let mut contact = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+                contact.step(&Inputs::default(), 0.0, 2e-2).unwrap();
+                let of = |output| contact.integer(output);
+                let (taken, rejected) = (of(IntegerOutput::SolverSteps), of(IntegerOutput::SolverRejectedSteps));
+                assert!(
+                    taken > 100 && 4 * rejected < taken,
+                    "{amplitude} m/s2, {frequency} Hz, {damping}, 1e-{exponent}: {rejected} beside {taken}"
+                );
+            }
+        }
+    }
+}

@@ -107,7 +107,7 @@ impl StepLengths {
     /// The next step: with few nodes where they suffice, else with many. `smooth`: length over which the force is smooth enough for
     /// many while a contact is closed, s.
     pub(crate) fn propose(&self, closed: bool, smooth: f64, remaining: f64) -> Proposal {
-        // In flight it is known.
+        // In flight the force is known.
         let long = if closed { self.long.min(smooth) } else { self.flight };
         if remaining <= self.short || closed && long < WORTH * self.short {
             Proposal::Short(self.short)

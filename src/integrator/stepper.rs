@@ -98,7 +98,8 @@ impl Stepper<'_> {
 
     /// Computes a trial step to the target. Returns its estimated error relative to the error allowed, infinite where the forces
     /// are not found: that from which the next length follows, and that by which it is accepted, with less of what the contact's
-    /// damper takes back. [`ROUNDED`] where it is mere rounding, which no shorter step reduces.
+    /// damper takes back. Where it may be mere rounding, which no shorter step reduces: [`ROUNDED`] if it is too large, else at most that
+    /// after which the next length of the grid follows.
     pub(super) fn judge<const S: usize>(&mut self, trial: &mut Trial<S>, target: &Target) -> [f64; 2]
     where
         Workspace: Rooms<S>,

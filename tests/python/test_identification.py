@@ -258,7 +258,10 @@ def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     assert asked(tmp_path, [force], "contact.overtravel", stiffness).notes == []
     rows = [f"{f},400,{20 * value}" for f, value in zip(measured.FREQUENCY, CLEAN["response"], strict=True)]
     (tmp_path / "strong.csv").write_text("\n".join(["frequency [Hz],acceleration [m/s2],force [N]", *rows]) + "\n")
-    assert any("the contact opens, at " in note for note in found(tmp_path / "strong.csv", parameters=[damping]).notes)
+    _, opens, *models = found(tmp_path / "strong.csv", parameters=[damping]).notes
+    assert "the contact opens, at " in opens
+    assert len(models) == 2
+    assert all("keeps its own" in note for note in models)
 
 
 def test_a_ring_down_that_is_sampled_too_coarsely_is_refused(tmp_path: Path) -> None:

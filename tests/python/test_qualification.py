@@ -372,6 +372,7 @@ def test_an_interrupted_assessment_continues_with_the_same_bytes(
     monkeypatch.setattr(assessment, "tested", killed)
     with pytest.raises(KilledError):
         qualify(two_models, "MIL-PRF-28776", **wanted)
+    assert begun[:2] == ["shock, 213 A", "shock, 213 C"]
     begun.clear()
     most[0] = 3
     qualify(two_models, "MIL-PRF-28776", **wanted)
