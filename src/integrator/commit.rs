@@ -10,7 +10,7 @@ use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{Nodal, add_columns, end};
+use crate::math::nodal::{Nodal, add, add_columns, end};
 use crate::math::simd::{Separate, compiled_for};
 use crate::model::Model;
 use crate::state::State;
@@ -100,8 +100,10 @@ fn follow_slip<const S: usize>(
     let (index, _) = model.friction()?;
     let (link, nodes) = model.links.get(index).zip(trial.links.get(index))?;
     let mut slips = nodes.approaches;
-    for (slip, deflection) in slips.iter_mut().zip(&trial.slip.deflections) {
-        *slip = -*slip - deflection;
+    let damping = model.law.damping();
+    let left = collocation.nodes.map(|x| trial.slip.left(x * length, damping));
+    for (slip, (deflection, left)) in slips.iter_mut().zip(trial.slip.deflections.iter().zip(&left)) {
+        *slip = -*slip - deflection - left;
     }
     let mut dissipated: Nodal<S> = [start.dissipated; S];
     if let Some(integrals) = collocation.shapes.integrals.first() {
@@ -110,6 +112,8 @@ fn follow_slip<const S: usize>(
             *power *= -length * (link.force + force);
         }
         add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
+        let start = state.links.get(index)?.force;
+        add::<S, Separate>(&mut dissipated, -start, &left.map(|left| trial.slip.fading - left));
     }
     let contact = *state.links.get(CONTACT)?;
     let growing = model.unstable_slip.iter().find(|unstable| unstable.slip == start.phase);
@@ -119,7 +123,7 @@ fn follow_slip<const S: usize>(
     if !contact.closed {
         state.slip.way = displacement;
     } else if start.phase.sign().is_some() {
-        state.slip.way = displacement - end(&trial.slip.deflections);
+        state.slip.way = displacement - trial.slip.end(length, damping);
         state.slip.distance += (state.slip.way - start.way).abs();
         state.slip.dissipated = start.dissipated.max(end(&dissipated));
     }

@@ -60,6 +60,10 @@ pub const COARSEST: f64 = 0.1;
 /// Pinned: 0, `tests/promise.rs`.
 pub const SLOWEST_DECAY: f64 = 1.0 / 3.0;
 
+/// Factor on the terms that are extrapolated, for what is read inside a step, 1: what is missed at the start, a single sample, may be half
+/// of what is missed elsewhere. Observed on a spring that rings on. Pinned: ÷ 2, `relays_that_once_exceeded_the_tolerance_keep_it`.
+pub const UNSEEN_TERMS: f64 = 2.0;
+
 /// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
 /// at the start, 1. From the quadrature of the root. Pinned: ÷ 1000, `tests/chatter.rs` (interruptions of
 /// microseconds).

@@ -127,7 +127,8 @@
 //! - *Closing* ([`events::closing`]): on cubics through approach and velocity at the nodes, with bounds of all that they miss. A
 //!   grazing touch is not missed, as it is by a search for changes of sign.
 //! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What is missing there
-//!   would stay in the tangential spring as a wrong friction force.
+//!   would stay in the tangential spring as a wrong friction force; what fades in that spring in a part of the step is no polynomial
+//!   ([`collocation::slip`]).
 //! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance. Between the
 //!   places where it turns the force polynomial is monotone, so that no dip is missed.
 //!
@@ -140,11 +141,11 @@
 //!
 //! While inputs do not change, the integrator takes steps of its own, also beyond the communication point, and outputs are read from
 //! dense output, the polynomials of its last step ([`communication_step`], [`motion`], [`recorder`]). A long step that will be read
-//! inside must keep the tolerance there too ([`accuracy`]). A short step that cannot ends at the communication point, cut as at an
-//! event. A changed input takes the motion back to the communication point: it is integrated again from the start of the step,
-//! under the former inputs. With inputs that change in it, a communication step is integrated to its end. Inputs act
-//! linearly in time within a communication step; a jump of their rate changes the dissipative force at once and restarts the step
-//! length.
+//! inside must keep the tolerance there too ([`accuracy`]): that of the forces in the step where they are larger than the force scale,
+//! as nothing follows from what is read. A short step that cannot ends at the communication point, cut as at an event. A changed
+//! input takes the motion back to the communication point: it is integrated again from the start of the step, under the former
+//! inputs. With inputs that change in it, a communication step is integrated to its end. Inputs act linearly in time within a
+//! communication step; a jump of their rate changes the dissipative force at once and restarts the step length.
 //!
 //! *Inputs that change each time.* Each change bends the force, which with contact damping follows within a fraction of a
 //! microsecond. A wrong velocity that is left by it is taken back by the contact's damper as soon, so that it counts only

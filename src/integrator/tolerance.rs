@@ -5,7 +5,9 @@ use crate::integrator::constants::{AT_EVENT, LOOSEST, NEWTON, SHARE};
 /// The errors allowed, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// In the contact force: `solver.tolerance` times the force scale, as steps are taken with it.
+    /// `solver.tolerance`, as steps are taken with it, 1.
+    relative: f64,
+    /// In the contact force: that times the force scale.
     pub(crate) force: f64,
     /// Added by a step.
     pub(crate) step: f64,
@@ -19,13 +21,20 @@ pub struct Tolerance {
 impl Tolerance {
     /// Of a relative tolerance and a force scale (N).
     pub(crate) fn new(relative: f64, force_scale: f64) -> Self {
-        let force = relative.min(LOOSEST) * force_scale;
+        let relative = relative.min(LOOSEST);
+        let force = relative * force_scale;
         let step = SHARE * force;
         Self {
+            relative,
             force,
             step,
             newton: NEWTON * step,
             at_event: AT_EVENT * step,
         }
+    }
+
+    /// In a contact force that is read and goes no further, where forces are as large as this (N).
+    pub(crate) fn read(&self, largest: f64) -> f64 {
+        self.force.max(self.relative * largest)
     }
 }

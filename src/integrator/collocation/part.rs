@@ -208,7 +208,7 @@ pub(crate) fn shorten<const S: usize>(
         let start = state
             .links
             .get(rubbing)
-            .map_or(0.0, |along| -along.approach - state.slip.way);
+            .map_or(0.0, |along| -along.approach - state.slip.way - trial.slip.fading);
         trial.slip.deflections = with_start(start, &trial.slip.deflections);
         trial.slip.rates = nodal(&trial.slip.rates);
     }

@@ -1,15 +1,69 @@
 //! Slip at the nodes of a step. While the contact slips, the deflection `z` of the tangential spring follows from
-//! `beta_c z' + z = -T / k_t`, collocated at the same nodes.
+//! `beta_c z' + z = -T / k_t`, collocated at the same nodes. In a step that is long against `beta_c` no polynomial follows how `z` moves
+//! to its course where slip has just begun: there it is the polynomial `w` through the nodes that solves this equation, and a part
+//! that fades,
+//!
+//! ```text
+//! z = w + (z_0 - w_0) exp(-t / beta_c)
+//! ```
 
 use crate::contact::friction::Friction;
 use crate::integrator::collocation::coefficients::StepCoefficients;
+use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::trial::{SlipNodes, Trial};
 use crate::link::CONTACT;
-use crate::math::nodal::{add_columns, scaled};
+use crate::math::nodal::{Nodal, add, add_columns, dot, end, scaled, unit};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
+
+/// See [`StepCoefficients::following`]; `damping`: the damping time, s.
+#[inline(always)]
+pub(super) fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shapes<S>) -> [Nodal<S>; S] {
+    let long = is_long::<S>(h, damping);
+    // The velocity is the derivative of the polynomial through the nodal deflections, or that of which the deflection is the integral.
+    let table = if long {
+        shapes.derivatives.get(1)
+    } else {
+        shapes.integrals.first()
+    };
+    let (factor, own) = if long {
+        (damping / h, 1.0)
+    } else {
+        (h / (damping + h), damping / (damping + h))
+    };
+    let table = table.map_or([[0.0; S]; S], |table| table.nodal);
+    let (mut matrix, mut right) = (table, table);
+    for (j, (column, right)) in matrix.iter_mut().zip(&mut right).enumerate() {
+        *column = scaled(column, factor);
+        add::<S, A>(column, own, unit(j));
+        *right = if long {
+            scaled(right, 1.0 / h)
+        } else {
+            scaled(unit(j), 1.0 / (damping + h))
+        };
+    }
+    solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
+}
+
+/// Whether a step of `length` seconds with `S` nodes is long against the damping time (s) of a contact.
+pub(crate) fn is_long<const S: usize>(length: f64, damping: f64) -> bool {
+    S as f64 * damping < length
+}
+
+impl<const S: usize> SlipNodes<S> {
+    /// What is left of the fading part `at` seconds after the start, m, at the damping time of the contact, s.
+    pub(crate) fn left(&self, at: f64, damping: f64) -> f64 {
+        self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp()
+    }
+
+    /// Deflection of the tangential spring at the end, m, `length` seconds after the start.
+    pub(crate) fn end(&self, length: f64, damping: f64) -> f64 {
+        end(&self.deflections) + self.left(length, damping)
+    }
+}
 
 /// Sets the slip of a trial whose forces and motion are set.
 #[inline(always)]
@@ -26,6 +80,7 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
     *slip = SlipNodes {
         deflections: [0.0; S],
         rates: [0.0; S],
+        fading: 0.0,
     };
     let start = -state.links[rubbing].approach - state.slip.way;
     let (true, Some(law)) = (state.links[CONTACT].closed, model.law.power()) else {
@@ -41,15 +96,82 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
         let d = model.links[CONTACT].approach + d;
         *ahead = friction.limit_deflection(law, sign, d, *rate) - start;
     }
-    let (Some(following), Some(integrals)) = (step.following.first_chunk::<S>(), collocation.shapes.integrals.first())
-    else {
+    let Some(following) = step.following.first_chunk::<S>() else {
         return;
     };
+    *slip = tends::<S, A>(collocation, following, (start, &ahead), (step.length, law.damping));
+    for (slip, rate) in slip.rates.iter_mut().zip(&along.rates) {
+        *slip = -rate - *slip;
+    }
+}
+
+/// Deflection `z` from a `start` (m), and in place of the slip its velocity, as it follows one that is `ahead` of the start (m) by so
+/// much at the nodes of a step of this length (s), at the damping time (s).
+#[inline(always)]
+fn tends<const S: usize, A: Arithmetic>(
+    collocation: &Collocation<S>,
+    following: &[Nodal<S>; S],
+    (start, ahead): (f64, &Nodal<S>),
+    (length, damping): (f64, f64),
+) -> SlipNodes<S> {
     let mut rates = [0.0; S];
-    add_columns::<S, A>(&mut rates, following, &ahead);
-    slip.deflections = [start; S];
-    add_columns::<S, A>(&mut slip.deflections, &integrals.nodal, &scaled(&rates, step.length));
-    for ((slip, rate), lagging) in slip.rates.iter_mut().zip(&along.rates).zip(&rates) {
-        *slip = -rate - lagging;
+    add_columns::<S, A>(&mut rates, following, ahead);
+    let fading = if is_long::<S>(length, damping) {
+        let [tends, goes] = [ahead, &rates].map(|values| dot::<S, A>(values, &collocation.at_start));
+        damping * goes - tends
+    } else {
+        0.0
+    };
+    let mut deflections = [start - fading; S];
+    if let Some(integrals) = collocation.shapes.integrals.first() {
+        add_columns::<S, A>(&mut deflections, &integrals.nodal, &scaled(&rates, length));
+    }
+    SlipNodes {
+        deflections,
+        rates,
+        fading,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::polynomial::{LONG_BY_TIME, SHORT_BY_TIME};
+    use crate::math::simd::Separate;
+
+    /// Beside the exact solution, from a start that is not on the course.
+    fn follows<const S: usize>(collocation: &Collocation<S>, length: f64, allowed: impl Fn(f64) -> f64) {
+        let damping = 1e-6;
+        // Ahead of a start at 2: 1 + x + x^2, and the polynomial that solves the equation.
+        let lag = damping / length;
+        let course = |x: f64| 3.0 + x + x * x - lag * (1.0 + 2.0 * x) + 2.0 * lag * lag;
+        let exact = |x: f64| course(x) + (2.0 - course(0.0)) * (-x / lag).exp();
+        let following = following::<S, Separate>(damping, length, &collocation.shapes);
+        let ahead = collocation.nodes.map(|x| 1.0 + x + x * x);
+        let found = tends::<S, Separate>(collocation, &following, (2.0, &ahead), (length, damping));
+        for (x, deflection) in collocation.nodes.iter().zip(&found.deflections) {
+            let wrong = deflection + found.left(x * length, damping) - exact(*x);
+            assert!(wrong.abs() <= allowed(lag), "{length} s, at {x}: {wrong:e}");
+        }
+    }
+
+    #[test]
+    fn a_tangential_spring_follows_its_limit_in_steps_of_any_length() {
+        // Long steps: rounding, multiplied as eight times the lag is subtracted from one. Others: what a polynomial misses of what fades,
+        // most where the step is nearly long, and what rounding leaves of the exact solution, the difference of squares of the lag.
+        for length in [1e-3, 1e-4, 1e-5, 8.1e-6] {
+            follows(&LONG_BY_TIME, length, |_| 1e-9);
+            follows(&SHORT_BY_TIME, length, |_| 1e-9);
+        }
+        for length in [7.9e-6, 3.9e-6, 1e-6, 1e-7, 1e-9] {
+            follows(&LONG_BY_TIME, length, |lag| {
+                1e-2 * (0.125 / lag).powi(8) + 1e-15 * (1.0 + lag * lag)
+            });
+        }
+        for length in [3.9e-6, 1e-6, 1e-7, 1e-9] {
+            follows(&SHORT_BY_TIME, length, |lag| {
+                (0.25 / lag).powi(4) + 1e-15 * (1.0 + lag * lag)
+            });
+        }
     }
 }

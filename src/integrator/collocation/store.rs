@@ -9,10 +9,10 @@ use crate::excitation::generator::{Generator, Turns};
 use crate::integrator::collocation::coefficients::{
     EndGroup, ModeColumns, NodeRows, Response, StepCoefficients, responses_before,
 };
-use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::modal_response::ModeOverStep;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::shapes::{Shapes, Variable};
+use crate::integrator::collocation::shapes::Variable;
+use crate::integrator::collocation::slip::following;
 use crate::integrator::collocation::superposition::{Pair, Sum};
 use crate::link::Port;
 use crate::math::free_motion::FreeMotion;
@@ -379,24 +379,6 @@ impl<const S: usize> Modes<'_, S> {
             }
         }
     }
-}
-
-/// See [`StepCoefficients::following`]; `damping`: the damping time, s.
-#[inline(always)]
-fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shapes<S>) -> [Nodal<S>; S] {
-    let mut matrix = shapes.integrals.first().map_or([[0.0; S]; S], |table| table.nodal);
-    let mut right = [[0.0; S]; S];
-    let scale = 1.0 / (damping + h);
-    for (j, (column, right)) in matrix.iter_mut().zip(&mut right).enumerate() {
-        *column = scaled(column, h * scale);
-        column
-            .iter_mut()
-            .skip(j)
-            .take(1)
-            .for_each(|entry| *entry += damping * scale);
-        right.iter_mut().skip(j).take(1).for_each(|entry| *entry = scale);
-    }
-    solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
 }
 
 #[cfg(test)]

@@ -123,13 +123,15 @@ impl<const S: usize> Default for FreeResponse<S> {
     }
 }
 
-/// Slip at the nodes of a step.
+/// Slip at the nodes of a step ([`crate::integrator::collocation::slip`]).
 #[derive(Clone, Copy, Debug, Zeroable)]
 pub struct SlipNodes<const S: usize> {
-    /// Deflection of the tangential spring, m.
+    /// Deflection of the tangential spring, m, without what fades at once.
     pub deflections: Nodal<S>,
-    /// Slip velocity, m/s.
+    /// Slip velocity, m/s, without that.
     pub rates: Nodal<S>,
+    /// Deflection at the start that fades at once, m.
+    pub fading: f64,
 }
 
 /// Loads of an axial force that follows the deflection, at each node for each mode.

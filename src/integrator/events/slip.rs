@@ -10,6 +10,7 @@ use crate::contact::power::Power;
 use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::polynomial::Collocation;
+use crate::integrator::collocation::slip::is_long;
 use crate::integrator::constants::MOTION_ROUNDING;
 use crate::integrator::course::turning_points;
 use crate::integrator::events::{Cut, Event, Locator, engagement_rounding};
@@ -74,13 +75,13 @@ impl<'a, const S: usize> Locator<'a, S> {
             let damping = law.damping;
             let stiffness = friction.ratio * law.tangent_stiffness(law.indentation(whole.model.force_scale));
             let wrong = scaled(&whole.trial.slip.rates, sign * stiffness * (damping + whole.length));
-            let before = if damping > 0.0 {
+            let before = if is_long::<S>(whole.length, damping) {
+                dot::<S, Separate>(&wrong, &whole.collocation.at_start)
+            } else {
                 // As a jump of the contact force has left it.
                 let across = (contact.approach + contact_at.approach, contact_at.rate);
                 let turned = friction.turned(law, sign, across, (z, -along_at.rate));
                 stiffness * (1.0 + whole.length / damping) * turned
-            } else {
-                dot::<S, Separate>(&wrong, &whole.collocation.at_start)
             };
             let (y, slope) = first(before.min(0.0), &wrong, Phase::Stick)?;
             ((y, slope * damping / (damping + whole.length)), Phase::Stick)
@@ -164,11 +165,10 @@ impl<'a, const S: usize> Locator<'a, S> {
         let along = self.whole.link(index, end.at, &self.search.modes);
         let d = contact.approach + end.d;
         if let Some(sign) = whole.state.slip.phase.sign() {
-            let start = -along_at.approach - whole.state.slip.way;
-            let course = whole
-                .collocation
-                .through(whole.model.simd, start, &whole.trial.slip.deflections);
-            let z = value_at(&course, end.at / whole.length - 1.0);
+            let slip = &whole.trial.slip;
+            let start = -along_at.approach - whole.state.slip.way - slip.fading;
+            let course = whole.collocation.through(whole.model.simd, start, &slip.deflections);
+            let z = value_at(&course, end.at / whole.length - 1.0) + slip.left(end.at, law.damping);
             friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
         } else {
             let stick = friction.trial(law, d, -along.d - whole.state.slip.way, -along.rate);
