@@ -5,7 +5,7 @@ use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING, UNSEEN_TERMS};
 use crate::link::CONTACT;
-use crate::math::nodal::greatest;
+use crate::math::nodal::{Nodal, end, greatest};
 use crate::math::prediction::value_and_slope;
 
 impl<const S: usize> Whole<'_, S> {
@@ -21,9 +21,9 @@ impl<const S: usize> Whole<'_, S> {
         self.model.tolerance.read(largest)
     }
 
-    /// Error of what is read inside the trial, in the error allowed there: of the force, in flight of the indentation.
-    pub(crate) fn inaccuracy(&self) -> f64 {
-        let (trial, allowed) = (self.trial, self.readable());
+    /// Error of what is read inside the trial, in the error `allowed` there (N): of the force, in flight of the indentation.
+    pub(crate) fn inaccuracy(&self, allowed: f64) -> f64 {
+        let trial = self.trial;
         if !self.state.is_closed() {
             self.misread() / allowed
         } else if self.collocation.variable == Variable::Root {
@@ -38,6 +38,22 @@ impl<const S: usize> Whole<'_, S> {
         } else {
             trial.start_defect / allowed
         }
+    }
+
+    /// The same of a short step, N, where a force turns; not of one that hardly changes, as the fastest vibrations need not be resolved.
+    pub(crate) fn inaccuracy_of_turns(&self) -> f64 {
+        let Self {
+            model,
+            state,
+            collocation,
+            trial,
+            ..
+        } = *self;
+        let links = model.links.iter().zip(&state.links).zip(&trial.links);
+        let closed = links.filter(|((_, at), _)| at.closed);
+        let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &collocation.places, &nodes.forces));
+        let error = trial.inner_error.lasting.max(BETWEEN_NODES * trial.next_terms);
+        error.min(swings.fold(0.0, f64::max))
     }
 
     /// Error of the indentation between the nodes of the trial as it would be read there, as the force that makes it of the spring, N.
@@ -67,5 +83,60 @@ impl<const S: usize> Whole<'_, S> {
             return 0.0;
         }
         most / model.compliance
+    }
+}
+
+/// What the polynomial through the start and the nodes of a short step misses at most between them, in what the one without its last
+/// term misses at the start, 1: greatest value of `x prod (1 - x / c_k)`.
+const BETWEEN_NODES: f64 = 0.155;
+
+/// How far a force that rises and falls from `start` (N) over the nodes of a step is from where it turns, N; 0 of one that does not.
+/// It turns where a parabola through three neighbours does, which may be beyond all of them.
+fn swing<const S: usize>(start: f64, places: &Nodal<S>, forces: &Nodal<S>) -> f64 {
+    let end = end(forces);
+    let mut most = 0.0_f64;
+    let (mut before, mut middle) = (None, (0.0, start));
+    for after in places.iter().copied().zip(forces.iter().copied()) {
+        if let Some(before) = before {
+            let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+            let (left, right) = (slope(before, middle), slope(middle, after));
+            let curvature = (right - left) / (after.0 - before.0);
+            let at_start = left - curvature * (middle.0 - before.0);
+            let place = -at_start / (2.0 * curvature);
+            if (0.0..=after.0 - before.0).contains(&place) {
+                let turn = before.1 + 0.5 * at_start * place;
+                most = most.max((turn - start).abs().min((turn - end).abs()));
+            }
+        }
+        (before, middle) = (Some(middle), after);
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::collocation::polynomial::SHORT_BY_TIME;
+
+    #[test]
+    fn the_shape_between_the_nodes_of_short_steps_has_its_greatest_value() {
+        let shape = |x: f64| {
+            SHORT_BY_TIME
+                .nodes
+                .iter()
+                .fold(x, |value, node| value * (1.0 - x / node))
+        };
+        let most = (0..1000).map(|k| shape(1e-3 * f64::from(k)).abs()).fold(0.0, f64::max);
+        assert!((most / BETWEEN_NODES - 1.0).abs() < 0.01, "{most}");
+    }
+
+    /// Between its last two nodes this one lies lower than at any of them.
+    #[test]
+    fn a_force_turns_between_nodes() {
+        let force = |x: f64| (x - 0.93).powi(2);
+        let places = &SHORT_BY_TIME.places;
+        let depth = swing(force(0.0), places, &places.map(force));
+        assert!((depth - force(1.0)).abs() < 1e-15, "{depth}");
+        assert_eq!(swing(0.0, places, places), 0.0);
     }
 }

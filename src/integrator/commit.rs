@@ -123,7 +123,7 @@ fn follow_slip<const S: usize>(
     if !contact.closed {
         state.slip.way = displacement;
     } else if start.phase.sign().is_some() {
-        state.slip.way = displacement - trial.slip.end(length, damping);
+        state.slip.way = displacement - end(&trial.slip.deflections) - end(&left);
         state.slip.distance += (state.slip.way - start.way).abs();
         state.slip.dissipated = start.dissipated.max(end(&dissipated));
     }

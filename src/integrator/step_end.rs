@@ -145,7 +145,8 @@ impl Stepper<'_> {
             return self.is_cut(target).then(|| self.grid.end());
         };
         let inside = read > self.state.time && read < target.time;
-        (inside && S == SHORT && self.whole(trial, target.length).inaccuracy() > 1.0).then_some(read)
+        let whole = self.whole(trial, target.length);
+        (inside && S == SHORT && whole.inaccuracy(whole.readable()) > 1.0).then_some(read)
     }
 
     /// Whether the step ends with the communication step, inside the trial.

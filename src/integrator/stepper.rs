@@ -18,7 +18,7 @@ use crate::integrator::recorder::Recorder;
 use crate::integrator::step_length::{StepOutcome, error_of_growth};
 use crate::integrator::transition;
 use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
-use crate::math::nodal::{LONG, Nodal, SHORT, end};
+use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::state::State;
 
@@ -108,7 +108,8 @@ impl Stepper<'_> {
             return [f64::INFINITY; 2];
         }
         let (model, closed) = (self.model, self.state.is_closed());
-        let allowed = self.whole(trial, target.length).readable();
+        let whole = self.whole(trial, target.length);
+        let allowed = whole.readable();
         let read = self.recorder.reads_before(target.time);
         let watched = model.scene.effects.extremes || model.counts_interruptions();
         // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs, or a jump of the
@@ -116,15 +117,9 @@ impl Stepper<'_> {
         let jumps = self.state.lengths.last == 0.0 && !self.state.touches_now();
         let inside =
             if (self.progress.driven || jumps) && watched && closed || (read || watched || !closed) && S != SHORT {
-                self.whole(trial, target.length).inaccuracy()
+                whole.inaccuracy(allowed)
             } else if watched {
-                // Of what turns; not of a force that hardly changes, as the fastest vibrations need not be resolved.
-                let links = model.links.iter().zip(&self.state.links).zip(&trial.links);
-                let closed = links.filter(|((_, at), _)| at.closed);
-                let places = &Rooms::<S>::room(self.workspace).cache.collocation.places;
-                let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, places, &nodes.forces));
-                let error = trial.inner_error.lasting.max(BETWEEN_NODES * trial.next_terms);
-                error.min(swings.fold(0.0, f64::max)) / allowed
+                whole.inaccuracy_of_turns() / allowed
             } else {
                 0.0
             };
@@ -296,60 +291,5 @@ impl Stepper<'_> {
             time: self.state.time,
             cause,
         }
-    }
-}
-
-/// What the polynomial through the start and the nodes of a short step misses at most between them, in what the one without its last
-/// term misses at the start, 1: greatest value of `x prod (1 - x / c_k)`.
-const BETWEEN_NODES: f64 = 0.155;
-
-/// How far a force that rises and falls from `start` (N) over the nodes of a step is from where it turns, N; 0 of one that does not.
-/// It turns where a parabola through three neighbours does, which may be beyond all of them.
-fn swing<const S: usize>(start: f64, places: &Nodal<S>, forces: &Nodal<S>) -> f64 {
-    let end = end(forces);
-    let mut most = 0.0_f64;
-    let (mut before, mut middle) = (None, (0.0, start));
-    for after in places.iter().copied().zip(forces.iter().copied()) {
-        if let Some(before) = before {
-            let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
-            let (left, right) = (slope(before, middle), slope(middle, after));
-            let curvature = (right - left) / (after.0 - before.0);
-            let at_start = left - curvature * (middle.0 - before.0);
-            let place = -at_start / (2.0 * curvature);
-            if (0.0..=after.0 - before.0).contains(&place) {
-                let turn = before.1 + 0.5 * at_start * place;
-                most = most.max((turn - start).abs().min((turn - end).abs()));
-            }
-        }
-        (before, middle) = (Some(middle), after);
-    }
-    most
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::integrator::collocation::polynomial::SHORT_BY_TIME;
-
-    #[test]
-    fn the_shape_between_the_nodes_of_short_steps_has_its_greatest_value() {
-        let shape = |x: f64| {
-            SHORT_BY_TIME
-                .nodes
-                .iter()
-                .fold(x, |value, node| value * (1.0 - x / node))
-        };
-        let most = (0..1000).map(|k| shape(1e-3 * f64::from(k)).abs()).fold(0.0, f64::max);
-        assert!((most / BETWEEN_NODES - 1.0).abs() < 0.01, "{most}");
-    }
-
-    /// Between its last two nodes this one lies lower than at any of them.
-    #[test]
-    fn a_force_turns_between_nodes() {
-        let force = |x: f64| (x - 0.93).powi(2);
-        let places = &SHORT_BY_TIME.places;
-        let depth = swing(force(0.0), places, &places.map(force));
-        assert!((depth - force(1.0)).abs() < 1e-15, "{depth}");
-        assert_eq!(swing(0.0, places, places), 0.0);
     }
 }

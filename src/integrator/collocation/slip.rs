@@ -14,7 +14,7 @@ use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::trial::{SlipNodes, Trial};
 use crate::link::CONTACT;
-use crate::math::nodal::{Nodal, add, add_columns, dot, end, scaled, unit};
+use crate::math::nodal::{Nodal, add, add_columns, dot, scaled, unit};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
 use crate::state::State;
@@ -24,15 +24,11 @@ use crate::state::State;
 pub(super) fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, shapes: &Shapes<S>) -> [Nodal<S>; S] {
     let long = is_long::<S>(h, damping);
     // The velocity is the derivative of the polynomial through the nodal deflections, or that of which the deflection is the integral.
-    let table = if long {
-        shapes.derivatives.get(1)
+    let scale = 1.0 / (damping + h);
+    let (table, factor, own) = if long {
+        (shapes.derivatives.get(1), damping / h, 1.0)
     } else {
-        shapes.integrals.first()
-    };
-    let (factor, own) = if long {
-        (damping / h, 1.0)
-    } else {
-        (h / (damping + h), damping / (damping + h))
+        (shapes.integrals.first(), h * scale, damping * scale)
     };
     let table = table.map_or([[0.0; S]; S], |table| table.nodal);
     let (mut matrix, mut right) = (table, table);
@@ -42,7 +38,7 @@ pub(super) fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, sha
         *right = if long {
             scaled(right, 1.0 / h)
         } else {
-            scaled(unit(j), 1.0 / (damping + h))
+            scaled(unit(j), scale)
         };
     }
     solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
@@ -56,12 +52,12 @@ pub(crate) fn is_long<const S: usize>(length: f64, damping: f64) -> bool {
 impl<const S: usize> SlipNodes<S> {
     /// What is left of the fading part `at` seconds after the start, m, at the damping time of the contact, s.
     pub(crate) fn left(&self, at: f64, damping: f64) -> f64 {
-        self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp()
-    }
-
-    /// Deflection of the tangential spring at the end, m, `length` seconds after the start.
-    pub(crate) fn end(&self, length: f64, damping: f64) -> f64 {
-        end(&self.deflections) + self.left(length, damping)
+        // There is none in most steps.
+        if self.fading == 0.0 {
+            0.0
+        } else {
+            self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp()
+        }
     }
 }
 

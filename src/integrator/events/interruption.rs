@@ -43,14 +43,15 @@ impl<const S: usize> Locator<'_, S> {
         let polynomial = whole.collocation.through(whole.model.simd, at_start, &nodes.forces);
         let value = |y: f64| excess(value_at(&polynomial, y));
         let turns = turning_points(whole.model.simd, &polynomial);
-        let inaccuracy = whole.inaccuracy();
+        let allowed = whole.readable();
+        let inaccuracy = whole.inaccuracy(allowed);
         let is_accurate = inaccuracy <= 1.0;
         if !is_accurate && whole.collocation.variable == Variable::Root {
             return false;
         }
         let is_brief = whole.length
             <= BRIEF * whole.model.scene.solver.effective_tolerance() * whole.model.scene.chatter.minimum_duration;
-        let unsure = inaccuracy * whole.readable();
+        let unsure = inaccuracy * allowed;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
             return false;
         }
