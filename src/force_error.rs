@@ -3,10 +3,10 @@
 //! While no contact has opened or closed, errors die out with the vibrations: it is the largest error that a step has added, times
 //! a factor. Then a deviation of the motion is carried along ([`crate::integrator::deviation`]), which tells by how much the
 //! largest error has grown, and which force all errors so far make if each has the direction that grows most. The first says too
-//! little where many errors add up, the second too much: the estimate is their geometric mean. Of 2,000 random relays of all kinds
-//! 55 exceed their tolerance, two of them without a larger estimate; one in seven that keep it has one, too. What the modes left
-//! out do is added ([`crate::beam::resolution`]). Where slip is unstable ([`crate::slip_stability`]) all of it grows, at the rate
-//! of such a contact force, until the contact sticks, opens or slips back.
+//! little where many errors add up, the second too much: the estimate is their geometric mean. What the modes left out do
+//! ([`crate::beam::resolution`]) is added, grown as much as the largest error. Where slip is unstable ([`crate::slip_stability`]) all
+//! of it grows, at the rate of such a contact force, until the contact sticks, opens or slips back. How often the estimate is too
+//! small, and how often it exceeds the tolerance without need, is in docs/accuracy.md.
 
 use std::array;
 
@@ -129,8 +129,9 @@ impl ForceError {
     /// Estimate of the error of the contact force so far, relative as the tolerance is; 1 at most: the force is not known at all.
     pub fn relative(&self) -> f64 {
         let by_steps = PER_STEP * self.largest;
-        let by_all = (by_steps * self.by_deviation.max(by_steps)).sqrt() * (0.5 * self.largest_growth).exp();
-        ((by_all + self.unresolved) * self.largest_by_slip.exp()).min(1.0)
+        let growth = self.largest_growth.exp();
+        let by_all = (by_steps * self.by_deviation.max(by_steps) * growth).sqrt() + self.unresolved * growth;
+        (by_all * self.largest_by_slip.exp()).min(1.0)
     }
 
     /// Over a step of `length` seconds, in which slip grows at this rate (1/s); `None`: it does not slip, or in a direction in

@@ -64,7 +64,7 @@ impl Model {
                 limit: spring.buckling_load,
             });
         };
-        let resolution = springs.resolution(&basis, &own, scene.pushed_at().is_some());
+        let resolution = springs.resolution(&basis, &own);
         let Basis {
             modes, shapes, space, ..
         } = basis;

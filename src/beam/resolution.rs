@@ -13,12 +13,9 @@
 //! at most: with the largest factor at any frequency, and the largest `c` so far. Where modes are given, but not all of them used,
 //! the highest in use stand for the last functions. Each spring has functions of its own; what they lack adds up.
 //!
-//! A pusher loads the spring elsewhere. As its force jumps the contact feels what the missing functions do before any wave can
-//! reach it, and the damping `beta` of the spring resists their strain as its stiffness does: `c + beta c'` stands for `c`. What
-//! `c` makes counts in the next blow, what `beta c'` makes is over by then: it counts in the ratio of the contact's stiffness to that
-//! in a blow. So it is where the other contact is on a spring, too: a blow between two springs is over when the waves have left, and
-//! its maximum is made by what leaves last. Else the force of the contact itself jumps first, and what is missing in its course after
-//! that is over before it shows.
+//! The damping `beta` of the spring resists the strain of the missing functions as its stiffness does: `c + beta c'` stands for `c`.
+//! What `c` makes counts in the next blow. What `beta c'` makes is over by then: it counts in the ratio of the contact's stiffness to
+//! that in a blow.
 
 use nalgebra::Complex;
 
@@ -47,26 +44,21 @@ pub struct Resolution {
 struct Part {
     /// Coefficients of each mode, sqrt(J) per displacement.
     rows: Vec<Last>,
-    /// Time in which the velocity of a mode counts as a displacement, per stiffness of the contact, s m/N; 0 without jolts.
+    /// Time in which the velocity of a mode counts as a displacement, per stiffness of the contact, s m/N.
     damping: f64,
     /// Contact force that is missing per coefficient, N / sqrt(J).
     force: f64,
 }
 
 impl Resolution {
-    /// Of modes in a blow, with the damping of each spring (`blows`, in their order); whether it jolts, from a pusher or another
-    /// spring.
-    pub fn new(basis: &Basis, blows: [&Blow; SPRINGS], jolts: bool) -> Self {
+    /// Of modes in a blow, with the damping of each spring (`blows`, in their order).
+    pub fn new(basis: &Basis, blows: [&Blow; SPRINGS]) -> Self {
         let part = |(spring, blow): (usize, &Blow)| {
             let rows: Vec<_> = basis.last.iter().filter_map(|last| last.get(spring).copied()).collect();
             let force = OF_BOUND * greatest_force(&basis.modes, &rows, blow);
             (force > 0.0).then(|| Part {
                 rows,
-                damping: if jolts {
-                    blow.stiffness_damping / blow.contact_stiffness
-                } else {
-                    0.0
-                },
+                damping: blow.stiffness_damping / blow.contact_stiffness,
                 force,
             })
         };

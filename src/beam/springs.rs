@@ -132,10 +132,10 @@ impl Springs {
     }
 
     /// What modes left out do in a blow of the contact.
-    pub fn resolution(&self, basis: &Basis, own: &Blow, pushed: bool) -> Resolution {
+    pub fn resolution(&self, basis: &Basis, own: &Blow) -> Resolution {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.blow(own));
         let blows = [own, fixed.as_ref().unwrap_or(own), own];
-        Resolution::new(basis, blows, pushed || self.fixed.is_some())
+        Resolution::new(basis, blows)
     }
 
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,

@@ -112,11 +112,11 @@ impl Stepper<'_> {
         let allowed = whole.readable();
         let read = self.recorder.reads_before(target.time);
         let watched = model.scene.effects.extremes || model.counts_interruptions();
-        // 4-node steps may be inaccurate inside: they end where they are read. After a change of the inputs, or a jump of the
-        // generated acceleration, or where the force turns, extremes lie there.
+        // Inside steps with few nodes extremes lie after a change of the inputs, or a jump of the generated acceleration, or where the
+        // force turns; else they may be inaccurate there, unless they are read.
         let jumps = self.state.lengths.last == 0.0 && !self.state.touches_now();
         let inside =
-            if (self.progress.driven || jumps) && watched && closed || (read || watched || !closed) && S != SHORT {
+            if read || (self.progress.driven || jumps) && watched && closed || (watched || !closed) && S != SHORT {
                 whole.inaccuracy(allowed)
             } else if watched {
                 whole.inaccuracy_of_turns() / allowed

@@ -143,17 +143,30 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay, part: f64) -> Judged {
 
 /// Judges relays on all cores; in order.
 pub fn judge_all(first: u64, count: u64, draw: fn(u64) -> Relay, part: f64) -> Vec<Judged> {
-    on_all_cores(first..first + count, |number| judge(number, draw, part))
+    let mut all = Vec::new();
+    judge_each(first, count, draw, part, |judged| all.push(judged));
+    all
+}
+
+/// Judges relays on all cores and tells each, in order, as soon as it and those before it are judged.
+pub fn judge_each(first: u64, count: u64, draw: fn(u64) -> Relay, part: f64, tell: impl FnMut(Judged) + Send) {
+    on_all_cores(first..first + count, |number| judge(number, draw, part), tell);
 }
 
 /// Compares references on all cores; in order.
 pub fn compare_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Disagreement> {
-    let all = on_all_cores(first..first + count, |number| compare(number, draw));
-    all.into_iter().flatten().collect()
+    let mut all = Vec::new();
+    on_all_cores(
+        first..first + count,
+        |number| compare(number, draw),
+        |one| all.extend(one),
+    );
+    all
 }
 
-fn on_all_cores<T: Send>(numbers: Range<u64>, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
-    let (left, found) = (Mutex::new(numbers), Mutex::new(BTreeMap::new()));
+fn on_all_cores<T: Send>(numbers: Range<u64>, of: impl Fn(u64) -> T + Sync, tell: impl FnMut(T) + Send) {
+    let done = Mutex::new((numbers.clone(), BTreeMap::new(), tell));
+    let left = Mutex::new(numbers);
     // Each thread takes the next once it has done one, as some take a hundred times as long as others.
     let next = || left.lock().unwrap().next();
     thread::scope(|scope| {
@@ -161,10 +174,14 @@ fn on_all_cores<T: Send>(numbers: Range<u64>, of: impl Fn(u64) -> T + Sync) -> V
             scope.spawn(|| {
                 while let Some(number) = next() {
                     let one = of(number);
-                    found.lock().unwrap().insert(number, one);
+                    let (untold, found, tell) = &mut *done.lock().unwrap();
+                    found.insert(number, one);
+                    while let Some(one) = found.remove(&untold.start) {
+                        tell(one);
+                        untold.next();
+                    }
                 }
             });
         }
     });
-    found.into_inner().unwrap().into_values().collect()
 }

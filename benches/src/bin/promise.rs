@@ -1,14 +1,14 @@
 //! Judges random relays by the promise of `solver.tolerance` and writes `promise.csv`; `python -m report promise` makes tables and a
 //! figure of it.
 
-use std::fmt::Write as _;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Parser;
 use testing::kinds::{self, KINDS};
-use testing::promise::{Judged, Outcome, compare_all, judge_all};
+use testing::promise::{Judged, Outcome, compare_all, judge_each};
 
 #[derive(Parser)]
 #[command(about = "Judges random relays by the promise of solver.tolerance")]
@@ -42,23 +42,35 @@ fn main() -> Result<()> {
         silent.for_each(|compared| println!("{compared:?}"));
         return Ok(());
     }
-    let judged = judge_all(arguments.first, arguments.count, draw, 0.0);
     if arguments.kind.is_some() {
-        let above = judged.iter().filter(|judged| judged.error > judged.tolerance);
-        above.for_each(|judged| println!("{judged:?}"));
-        let number = |is: fn(&Judged) -> bool| judged.iter().filter(|judged| is(judged)).count();
-        let run = number(|judged| judged.outcome != Outcome::NotRun);
-        let alarms = number(|judged| judged.outcome == Outcome::Kept && judged.estimate > judged.tolerance);
+        let (mut run, mut alarms) = (0, 0);
+        judge_each(arguments.first, arguments.count, draw, 0.0, |judged| {
+            run += u64::from(judged.outcome != Outcome::NotRun);
+            alarms += u64::from(judged.outcome == Outcome::Kept && judged.estimate > judged.tolerance);
+            if judged.error > judged.tolerance {
+                println!("{judged:?}");
+            }
+        });
         println!("{run} run; of those that keep their tolerance {alarms} are announced as above it");
         return Ok(());
     }
     fs::create_dir_all(&arguments.folder)?;
-    Ok(fs::write(arguments.folder.join("promise.csv"), csv(&judged))?)
+    let mut table = File::create(arguments.folder.join("promise.csv"))?;
+    writeln!(
+        table,
+        "relay,kind,damping,opens,tolerance,error,instants,estimate,outcome"
+    )?;
+    let mut written = Ok(());
+    judge_each(arguments.first, arguments.count, draw, 0.0, |judged| {
+        if written.is_ok() {
+            written = writeln!(table, "{}", row(&judged));
+        }
+    });
+    Ok(written?)
 }
 
-fn csv(judged: &[Judged]) -> String {
-    let mut text = "relay,kind,damping,opens,tolerance,error,instants,estimate,outcome\n".to_owned();
-    for Judged {
+fn row(judged: &Judged) -> String {
+    let Judged {
         number,
         kind,
         damping,
@@ -68,13 +80,7 @@ fn csv(judged: &[Judged]) -> String {
         instants,
         estimate,
         outcome,
-    } in judged
-    {
-        let instants = instants.map_or(String::new(), |instants| format!("{instants:e}"));
-        let _ = writeln!(
-            text,
-            "{number},{kind},{damping:e},{opens},{tolerance:e},{error:e},{instants},{estimate:e},{outcome:?}"
-        );
-    }
-    text
+    } = judged;
+    let instants = instants.map_or(String::new(), |instants| format!("{instants:e}"));
+    format!("{number},{kind},{damping:e},{opens},{tolerance:e},{error:e},{instants},{estimate:e},{outcome:?}")
 }
