@@ -10,8 +10,8 @@ use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};
 use crate::math::free_motion::FreeMotion;
-use crate::math::nodal::{Nodal, add, add_columns, end};
-use crate::math::simd::{Separate, compiled_for};
+use crate::math::nodal::end;
+use crate::math::simd::compiled_for;
 use crate::model::Model;
 use crate::state::State;
 
@@ -105,16 +105,12 @@ fn follow_slip<const S: usize>(
     for (slip, (deflection, left)) in slips.iter_mut().zip(trial.slip.deflections.iter().zip(&left)) {
         *slip = -*slip - deflection - left;
     }
-    let mut dissipated: Nodal<S> = [start.dissipated; S];
-    if let Some(integrals) = collocation.shapes.integrals.first() {
-        let mut powers = trial.slip.rates;
-        for (power, force) in powers.iter_mut().zip(&nodes.forces) {
-            *power *= -length * (link.force + force);
-        }
-        add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
-        let start = state.links.get(index)?.force;
-        add::<S, Separate>(&mut dissipated, -start, &left.map(|left| trial.slip.fading - left));
-    }
+    let forces = (
+        state.links.get(index)?.force,
+        nodes.forces.map(|force| link.force + force),
+    );
+    let mut dissipated = trial.slip.dissipated(collocation, forces, &left, length);
+    dissipated.iter_mut().for_each(|energy| *energy += start.dissipated);
     let contact = *state.links.get(CONTACT)?;
     let growing = model.unstable_slip.iter().find(|unstable| unstable.slip == start.phase);
     let growth = growing.map(|unstable| unstable.growth(contact.force));

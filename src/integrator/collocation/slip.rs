@@ -15,7 +15,7 @@ use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::trial::{SlipNodes, Trial};
 use crate::link::CONTACT;
 use crate::math::nodal::{Nodal, add, add_columns, dot, scaled, unit};
-use crate::math::simd::Arithmetic;
+use crate::math::simd::{Arithmetic, Separate};
 use crate::model::Model;
 use crate::state::State;
 
@@ -58,6 +58,26 @@ impl<const S: usize> SlipNodes<S> {
         } else {
             self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp()
         }
+    }
+
+    /// Energy dissipated since the start of a step of this length (s), J, by a friction force (N, at its start and nodes); with what is
+    /// `left` of the fading part, which is over before the force changes.
+    pub(crate) fn dissipated(
+        &self,
+        collocation: &Collocation<S>,
+        (start, forces): (f64, Nodal<S>),
+        left: &Nodal<S>,
+        length: f64,
+    ) -> Nodal<S> {
+        let mut powers = self.rates;
+        for (power, force) in powers.iter_mut().zip(&forces) {
+            *power *= -length * force;
+        }
+        let mut dissipated = left.map(|left| -start * (self.fading - left));
+        if let Some(integrals) = collocation.shapes.integrals.first() {
+            add_columns::<S, Separate>(&mut dissipated, &integrals.nodal, &powers);
+        }
+        dissipated
     }
 }
 
@@ -133,7 +153,6 @@ fn tends<const S: usize, A: Arithmetic>(
 mod tests {
     use super::*;
     use crate::integrator::collocation::polynomial::{LONG_BY_TIME, SHORT_BY_TIME};
-    use crate::math::simd::Separate;
 
     /// Beside the exact solution, from a start that is not on the course.
     fn follows<const S: usize>(collocation: &Collocation<S>, length: f64, allowed: impl Fn(f64) -> f64) {
@@ -148,6 +167,26 @@ mod tests {
         for (x, deflection) in collocation.nodes.iter().zip(&found.deflections) {
             let wrong = deflection + found.left(x * length, damping) - exact(*x);
             assert!(wrong.abs() <= allowed(lag), "{length} s, at {x}: {wrong:e}");
+        }
+    }
+
+    /// Of the slip of a contact that moves at a velocity, as its spring relaxes from a start that is not on the course.
+    #[test]
+    fn a_constant_friction_force_dissipates_itself_times_the_slip() {
+        let (force, velocity, damping, collocation) = (-0.3, 5e3, 1e-6, &LONG_BY_TIME);
+        for length in [1e-4, 1e-6] {
+            let following = following::<8, Separate>(damping, length, &collocation.shapes);
+            let mut slip = tends::<8, Separate>(collocation, &following, (2.0, &[-1.5; 8]), (length, damping));
+            slip.rates = slip.rates.map(|rate| velocity - rate);
+            let left = collocation.nodes.map(|x| slip.left(x * length, damping));
+            let dissipated = slip.dissipated(collocation, (force, [force; 8]), &left, length);
+            for (k, x) in collocation.nodes.iter().enumerate() {
+                let way = velocity * x * length - (slip.deflections[k] + left[k] - 2.0);
+                assert!(
+                    (dissipated[k] + force * way).abs() < 1e-12,
+                    "{length} s: {dissipated:?}"
+                );
+            }
         }
     }
 
