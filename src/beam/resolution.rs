@@ -28,7 +28,8 @@ use crate::math::simd::LANES;
 /// after more periods than there are between blows.
 const DECAY: f64 = 0.05;
 
-/// Error of the contact force over this bound, 1: of closed relays with 8 to 48 modes, 95 % have a smaller one.
+/// Error of the contact force over this bound, grown as a deviation does where contacts open and close, 1: in all but 2 of 108 runs of
+/// random relays with 8 to 44 modes it is smaller.
 const OF_BOUND: f64 = 0.25;
 
 /// What the modes left out do, of each spring.
