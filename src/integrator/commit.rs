@@ -109,8 +109,8 @@ fn follow_slip<const S: usize>(
         state.links.get(index)?.force,
         nodes.forces.map(|force| link.force + force),
     );
-    let mut dissipated = trial.slip.dissipated(collocation, forces, &left, length);
-    dissipated.iter_mut().for_each(|energy| *energy += start.dissipated);
+    let dissipated = trial.slip.dissipated(collocation, forces, &left, length);
+    let dissipated = dissipated.map(|energy| start.dissipated + energy);
     let contact = *state.links.get(CONTACT)?;
     let growing = model.unstable_slip.iter().find(|unstable| unstable.slip == start.phase);
     let growth = growing.map(|unstable| unstable.growth(contact.force));

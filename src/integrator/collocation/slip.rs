@@ -180,12 +180,10 @@ mod tests {
             slip.rates = slip.rates.map(|rate| velocity - rate);
             let left = collocation.nodes.map(|x| slip.left(x * length, damping));
             let dissipated = slip.dissipated(collocation, (force, [force; 8]), &left, length);
-            for (k, x) in collocation.nodes.iter().enumerate() {
-                let way = velocity * x * length - (slip.deflections[k] + left[k] - 2.0);
-                assert!(
-                    (dissipated[k] + force * way).abs() < 1e-12,
-                    "{length} s: {dissipated:?}"
-                );
+            let nodes = collocation.nodes.iter().zip(&left);
+            for (energy, ((x, left), deflection)) in dissipated.iter().zip(nodes.zip(&slip.deflections)) {
+                let way = velocity * x * length - (deflection + left - 2.0);
+                assert!((energy + force * way).abs() < 1e-12, "{length} s: {dissipated:?}");
             }
         }
     }
