@@ -14,14 +14,13 @@ use crate::integrator::stepper::Stepper;
 use crate::integrator::workspace::{Room, Rooms, Workspace};
 use crate::link::{CONTACT, MAX_LINKS};
 use crate::math::nodal;
-use crate::math::nodal::SHORT;
 
 /// A trial is too long to end at an event inside.
 struct Shorter {
     /// Its error there, and the one allowed, N.
     error: f64,
     allowed: f64,
-    /// Whether a contact opens or closes, or the step is read.
+    /// Whether a contact opens or closes, or the communication step ends.
     before_event: bool,
 }
 
@@ -58,8 +57,8 @@ impl Stepper<'_> {
         Workspace: Rooms<S>,
     {
         let (model, length) = (self.model, target.length);
-        let read = self.read_at(trial, target);
-        let is_cut = self.is_cut(target);
+        // Where the communication step ends inside the trial, s.
+        let end = (!self.grid.free && target.time > self.grid.end()).then(|| self.grid.end());
         let (passing, shortest, changes) = (self.passing(), self.shortest(), self.progress.changes);
         let is_shortest = self.is_shortest(target);
         let mut locator = self.locator(trial, length);
@@ -88,7 +87,7 @@ impl Stepper<'_> {
         }
         let opens = suspects.iter().any(Option::is_some);
         let event = opens || closes.is_some();
-        let (error, allowed) = if is_cut && !event {
+        let (error, allowed) = if end.is_some() && !event {
             (trial.inner_error.with(passing), model.tolerance.step)
         } else if state.is_closed() {
             (trial.inner_error.total, model.tolerance.at_event)
@@ -100,7 +99,7 @@ impl Stepper<'_> {
                 || is_shortest
                 || error <= of_rounding::<S>(model, state, trial, MOTION_ROUNDING)
         };
-        if (event || read.is_some()) && !fits() {
+        if (event || end.is_some()) && !fits() {
             return Err(Shorter {
                 error,
                 allowed,
@@ -124,8 +123,8 @@ impl Stepper<'_> {
         if let Some(change) = change.filter(|change| first.is_none_or(|first| change.at < first.at)) {
             first = Some(locator.cut_at_change(&change));
         }
-        Ok(match (first, read) {
-            (Some(first), Some(read)) if first.time <= read => Some(first),
+        Ok(match (first, end) {
+            (Some(first), Some(end)) if first.time <= end => Some(first),
             (_, Some(time)) => Some(Cut {
                 at: time - state.time,
                 time,
@@ -133,25 +132,6 @@ impl Stepper<'_> {
             }),
             (first, None) => first,
         })
-    }
-
-    /// The instant (s) in a trial at which it will be read, if its polynomials are not accurate there, or the communication
-    /// step ends.
-    fn read_at<const S: usize>(&self, trial: &Trial<S>, target: &Target) -> Option<f64>
-    where
-        Workspace: Rooms<S>,
-    {
-        let Some(read) = self.recorder.read else {
-            return self.is_cut(target).then(|| self.grid.end());
-        };
-        let inside = read > self.state.time && read < target.time;
-        let whole = self.whole(trial, target.length);
-        (inside && S == SHORT && whole.inaccuracy(whole.readable()) > 1.0).then_some(read)
-    }
-
-    /// Whether the step ends with the communication step, inside the trial.
-    fn is_cut(&self, target: &Target) -> bool {
-        !self.grid.free && target.time > self.grid.end()
     }
 
     /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with the growth factor `growth`.
