@@ -40,7 +40,7 @@ pub fn prepare() -> Result<()> {
     let python3 = system_python()?;
     println!("creating .venv (Python packages of requirements.txt): some minutes the first time");
     output(command(python3).args(["-m", "venv", "--clear", ".venv"]))?;
-    output(pip().args(["-r", "requirements.txt"]))?;
+    install_packages(&["-r", "requirements.txt"], &required)?;
     // The project's own package is used from its folder.
     let link = "import os, sysconfig; site = sysconfig.get_path('purelib'); \
                 open(os.path.join(site, 'relay_contact.pth'), 'w').write(os.path.relpath('python', site))";
@@ -48,12 +48,18 @@ pub fn prepare() -> Result<()> {
     Ok(fs::write(stamp, required)?)
 }
 
-fn pip() -> Command {
-    let mut pip = python();
+/// Installs packages by uv, which takes a tenth of pip's time; by pip where uv cannot, as it does not read pip's settings.
+fn install_packages(packages: &[&str], required: &str) -> Result<()> {
     // Modules are compiled when they are first imported; most never are.
-    let quick = ["--disable-pip-version-check", "--no-compile", "--quiet"];
-    pip.args(["-m", "pip", "install"]).args(quick);
-    pip
+    let by_pip = |packages: &[&str]| {
+        let quick = ["--disable-pip-version-check", "--no-compile", "--quiet"];
+        output(python().args(["-m", "pip", "install"]).args(quick).args(packages))
+    };
+    let uv = required.lines().find(|line| line.starts_with("uv=="));
+    by_pip(&[uv.context("requirements.txt does not pin uv")?])?;
+    let by_uv = output(python().args(["-m", "uv", "pip", "install", "--quiet"]).args(packages));
+    by_uv.or_else(|_| by_pip(packages))?;
+    Ok(())
 }
 
 /// The folder of the libclang that comes with the environment.
@@ -74,8 +80,7 @@ pub fn install(task: &str) -> Result<()> {
     let mark = format!("; extra == '{task}'");
     println!("installing what the task {task} needs (Python packages of requirements.txt)");
     let marked = required.lines().filter_map(|line| line.strip_suffix(&mark));
-    output(pip().args(marked.map(str::trim)))?;
-    Ok(())
+    install_packages(&marked.map(str::trim).collect::<Vec<_>>(), &required)
 }
 
 /// zig and cargo-zigbuild, which only the release needs.
