@@ -74,7 +74,7 @@ fn collocation(count: usize, by_root: bool) -> String {
          with_start: &{:?}, nodal: &{:?} }}",
         times(&nodes, by_root),
         variable(by_root),
-        [without(1), without(2)],
+        [without(1), without(2), without(3)],
         integrals[0].end(),
         leading.collect::<Vec<_>>(),
         lagrange(&places),

@@ -45,14 +45,19 @@ impl<const S: usize> Whole<'_, S> {
         let Self {
             model,
             state,
+            drive,
             collocation,
             trial,
+            length,
             ..
         } = *self;
         let links = model.links.iter().zip(&state.links).zip(&trial.links);
         let closed = links.filter(|((_, at), _)| at.closed);
         let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &collocation.places, &nodes.forces));
-        let error = trial.inner_error.lasting.max(BETWEEN_NODES * trial.next_terms);
+        // What fades faster than the nodes follow is at the start only.
+        let bent = drive.has_just_changed(state.time, length);
+        let missed = if bent { trial.start_defect } else { trial.next_terms };
+        let error = trial.inner_error.lasting.max(BETWEEN_NODES * missed);
         error.min(swings.fold(0.0, f64::max))
     }
 

@@ -147,14 +147,10 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let start = state.links[index].force - model.links[index].force;
         let forces = &trial.links[index].forces;
         let defect = start - dot::<S, A>(forces, &self.collocation.at_start);
-        let (last, decay) = self.collocation.last_terms::<A>(start, forces);
+        let (expected, next) = self.collocation.next_terms::<A>(start, forces, defect);
+        trial.next_terms = trial.next_terms.max(next);
+        let defect = if self.bent { expected.copysign(defect) } else { defect };
         trial.start_defect = trial.start_defect.max(defect.abs());
-        trial.next_terms = trial.next_terms.max(last * decay * decay);
-        if self.bent {
-            let defect = defect.abs().max(last * decay).copysign(defect);
-            trial.start_defect = trial.start_defect.max(defect.abs());
-            return defect;
-        }
         defect
     }
 

@@ -28,8 +28,8 @@ pub struct Collocation<const S: usize> {
     pub shapes: Shapes<S>,
     /// Lagrange polynomials at the start of the step.
     pub at_start: Nodal<S>,
-    /// The same without the first node, and without the first two.
-    at_start_of_fewer: [Nodal<S>; 2],
+    /// The same without the first node, without the first two, and without the first three.
+    at_start_of_fewer: [Nodal<S>; 3],
     /// Mean of the Lagrange polynomials over the step: the weights of the Radau quadrature.
     weights: Nodal<S>,
     /// Highest coefficients of the Lagrange polynomials.
@@ -93,14 +93,17 @@ impl<const S: usize> Collocation<S> {
         dip.or(below)
     }
 
-    /// What the polynomial through all `values` but the first misses at the start, where the value is `start`, and over that of
-    /// the polynomial without two: times that ratio it is the defect to be expected, and once more the terms beyond. A defect
-    /// may pass through zero while they are large.
+    /// What the polynomial through `values` is expected to miss at the start, where the value is `start` and it misses `defect`; and
+    /// what the polynomial through the start, too, is expected to miss. Both are extrapolated from polynomials through fewer
+    /// values, as a single sample may pass through zero by chance.
     #[inline(always)]
-    pub fn last_terms<A: Arithmetic>(&self, start: f64, values: &Nodal<S>) -> (f64, f64) {
-        let [one, two] = &self.at_start_of_fewer;
+    pub fn next_terms<A: Arithmetic>(&self, start: f64, values: &Nodal<S>, defect: f64) -> (f64, f64) {
+        let [one, two, three] = &self.at_start_of_fewer;
         let (one, two) = (start - dot::<S, A>(values, one), start - dot::<S, A>(values, two));
-        (one.abs(), (one / two).abs().min(SLOWEST_DECAY))
+        let three = start - dot::<S, A>(values, three);
+        let decay = (one / two).abs().max((one / three).abs().sqrt()).min(SLOWEST_DECAY);
+        let expected = one.abs() * decay;
+        (defect.abs().max(expected), expected * decay)
     }
 
     /// Mean over the step of the nodal polynomial through `values`.
