@@ -72,32 +72,19 @@ const GROUPS: [(&str, &str); 9] = [
     ("BooleanOutput", "Boolean outputs."),
 ];
 
-fn group(causality: &str, kind: &str) -> String {
-    let role = match causality {
-        "input" => "Input",
-        "parameter" => "Parameter",
-        _ => "Output",
-    };
-    format!("{kind}{role}")
-}
-
 fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String, Box<dyn Error>> {
     let mut code = format!(
         "/// Identifies the variables of this library: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n\
          /// The same of the plain description.\npub const PLAIN_GUID: &str = \"{plain_guid}\";\n"
     );
-
-    let types = element(document, "TypeDefinitions")?;
-    for definition in types.children().filter(Node::is_element) {
-        if let Some(list) = definition.children().find(|node| node.has_tag_name("Enumeration")) {
+    for list in document.descendants().filter(|node| node.has_tag_name("Enumeration")) {
+        let definition = list.parent().ok_or("an enumeration without a name")?;
+        if definition.has_tag_name("SimpleType") {
             enumeration(&mut code, definition, list)?;
         }
     }
-
     let mut table = String::new();
-    let mut members = GROUPS.map(|_| String::new());
-    let mut arms = GROUPS.map(|_| String::new());
-    let mut all = GROUPS.map(|_| String::new());
+    let [mut members, mut arms, mut all] = [(); 3].map(|()| GROUPS.map(|_| String::new()));
     let list = element(document, "ModelVariables")?;
     let mut count = 0;
     for (index, variable) in list.children().filter(Node::is_element).enumerate() {
@@ -106,24 +93,24 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
         let value = variable.first_element_child().ok_or("a variable without a type")?;
         let kind = value.tag_name().name();
         let unit = unit(document, value);
-        let causality = attribute(variable, "causality")?;
-        let group = group(causality, kind);
-        let position = GROUPS
-            .iter()
-            .position(|(name, _)| *name == group)
-            .ok_or(format!("{name}: no group {group} in build.rs"))?;
+        let role = match attribute(variable, "causality")? {
+            "input" => "Input",
+            "parameter" => "Parameter",
+            _ => "Output",
+        };
+        let group = format!("{kind}{role}");
+        let position = GROUPS.iter().position(|(name, _)| *name == group);
+        let position = position.ok_or(format!("{name}: no group {group} in build.rs"))?;
         let variant = name.to_upper_camel_case();
         let doc = scene::doc(document, variable, value)?;
         writeln!(members[position], "    /// {doc}.\n    {variant},")?;
         writeln!(arms[position], "            Self::{variant} => &VARIABLES[{index}],")?;
         write!(all[position], "Self::{variant}, ")?;
-        let number = |name: &str, default: &str| {
-            value.attribute(name).map_or(default.to_owned(), |text| match text {
-                "true" => "1.0".to_owned(),
-                "false" => "0.0".to_owned(),
-                _ if kind == "String" => default.to_owned(),
-                number => format!("{number}_f64"),
-            })
+        let number = |name: &str, default: &str| match value.attribute(name) {
+            Some("true") => "1.0".to_owned(),
+            Some("false") => "0.0".to_owned(),
+            Some(number) if kind != "String" => format!("{number}_f64"),
+            _ => default.to_owned(),
         };
         writeln!(
             table,
@@ -189,31 +176,26 @@ fn by_reference(list: &Node) -> Result<String, Box<dyn Error>> {
     let mut positions = Vec::new();
     for (index, variable) in list.children().filter(Node::is_element).enumerate() {
         let reference = usize::from(attribute(variable, "valueReference")?.parse::<u16>()?);
-        if positions.len() <= reference {
-            positions.resize(reference + 1, u16::MAX);
-        }
+        positions.resize(positions.len().max(reference + 1), u16::MAX);
         if positions[reference] != u16::MAX {
             return Err(format!("value reference {reference} is used twice").into());
         }
         positions[reference] = u16::try_from(index)?;
     }
-    Ok(format!(
-        "static BY_VALUE_REFERENCE: [u16; {}] = {positions:?};",
-        positions.len()
-    ))
+    let count = positions.len();
+    Ok(format!("static BY_VALUE_REFERENCE: [u16; {count}] = {positions:?};"))
 }
 
 /// An enumeration type of the description as a Rust enum, with its values and names.
 fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Box<dyn Error>> {
     let name = attribute(definition, "name")?;
-    let items: Vec<_> = list.children().filter(Node::is_element).collect();
     writeln!(
         code,
         "/// {}.\n#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]\npub enum {name} {{",
         attribute(definition, "description")?
     )?;
     let (mut from, mut table) = (String::new(), String::new());
-    for item in items {
+    for item in list.children().filter(Node::is_element) {
         let (label, value) = (attribute(item, "name")?, attribute(item, "value")?);
         writeln!(
             code,
@@ -238,38 +220,28 @@ fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, String> {
 
 /// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
 fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
-    let mut code = format!(
-        "\n/**\n * The argument `fmuGUID` of `fmi2Instantiate`: a hash of modelDescription.xml.\n */\n#define RELAY_CONTACT_GUID \"{guid}\"\n"
-    );
-    for variable in document
-        .descendants()
-        .filter(|node| node.has_tag_name("ScalarVariable"))
-    {
+    let mut code = String::new();
+    let mut define = |doc: &str, name: &str, value: &str| {
+        let name = name.to_shouty_snake_case();
+        writeln!(code, "\n/**\n * {doc}.\n */\n#define RELAY_CONTACT_{name} {value}")
+    };
+    let doc = "The argument `fmuGUID` of `fmi2Instantiate`: a hash of modelDescription.xml";
+    define(doc, "GUID", &format!("\"{guid}\""))?;
+    for variable in element(document, "ModelVariables")?.children().filter(Node::is_element) {
         let value = variable.first_element_child().ok_or("a variable without a type")?;
-        let name = attribute(variable, "name")?;
+        let (name, kind) = (attribute(variable, "name")?, value.tag_name().name());
         let unit = match unit(document, value) {
             "" | "1" => String::new(),
             unit => format!(" in {unit}"),
         };
-        writeln!(
-            code,
-            "\n/**\n * `{name}`, {}{unit}: {}.\n */\n#define RELAY_CONTACT_{} {}u",
-            value.tag_name().name(),
-            attribute(variable, "description")?,
-            name.to_shouty_snake_case(),
-            attribute(variable, "valueReference")?
-        )?;
+        let doc = format!("`{name}`, {kind}{unit}: {}", attribute(variable, "description")?);
+        define(&doc, name, &format!("{}u", attribute(variable, "valueReference")?))?;
     }
     for item in document.descendants().filter(|node| node.has_tag_name("Item")) {
         let kind = item.ancestors().find(|node| node.has_tag_name("SimpleType"));
-        writeln!(
-            code,
-            "\n/**\n * {}.\n */\n#define RELAY_CONTACT_{}_{} {}",
-            attribute(item, "description")?,
-            attribute(kind.ok_or("an item without a type")?, "name")?.to_shouty_snake_case(),
-            attribute(item, "name")?.to_shouty_snake_case(),
-            attribute(item, "value")?
-        )?;
+        let kind = attribute(kind.ok_or("an item without a type")?, "name")?;
+        let name = format!("{kind} {}", attribute(item, "name")?);
+        define(attribute(item, "description")?, &name, attribute(item, "value")?)?;
     }
     Ok(code)
 }

@@ -206,7 +206,6 @@ fn integrals(nodes: &[f64], by_root: bool) -> Vec<Table> {
     (0..TERMS).map(table).collect()
 }
 
-/// The shapes at `s`.
 fn shape_values(nodes: &[f64], s: f64) -> Vec<f64> {
     let lagrange = nodes.iter().map(|own| {
         let others = nodes.iter().filter(|node| *node != own);

@@ -19,13 +19,11 @@ use crate::variables::PusherKind;
 /// Places between the stops at which the armature is looked for where it is at neither.
 const PLACES: u32 = 200;
 
-/// Constants of the armature.
 #[derive(Clone, Copy, Debug)]
 pub struct Armature {
     /// As the scene gives it.
     pub given: scene::Armature,
     gravity: f64,
-    /// The magnet.
     pub magnet: Magnet,
 }
 
@@ -56,7 +54,6 @@ impl Armature {
         })
     }
 
-    /// As a mode.
     pub fn mode(&self) -> Mode {
         let given = &self.given;
         let root = given.mass.sqrt();
@@ -70,7 +67,6 @@ impl Armature {
         }
     }
 
-    /// The law of a stop.
     pub fn stop(&self) -> Power {
         let given = &self.given;
         let critical = 2.0 * (given.stop_stiffness * given.mass).sqrt();

@@ -13,40 +13,29 @@ use crate::link::{Link, LinkLaw, Port};
 use crate::preload::Preload;
 use crate::scene::Scene;
 
-/// Ports and links.
 #[derive(Clone, Debug, Default)]
 pub struct Assembly {
-    /// Where forces act on the modes.
     pub ports: Vec<Port>,
     /// The laws of these forces, the contact first.
     pub links: Vec<Link>,
-    /// Which link is what.
     pub roles: Roles,
 }
 
-/// The laws of the contacts.
 #[derive(Clone, Copy, Debug)]
 pub struct Laws {
-    /// Of the contact.
     pub contact: Law,
-    /// Of a parallel contact.
     pub parallel: Option<Law>,
-    /// Of a second contact.
     pub second: Option<Law>,
 }
 
 /// The index of each link that a model may have beside the contact.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Roles {
-    /// Parallel contact.
     pub parallel: Option<usize>,
-    /// Second contact.
     pub second: Option<usize>,
-    /// Friction at the contact.
     pub friction: Option<usize>,
     /// Core that stops the armature.
     pub core: Option<usize>,
-    /// Pusher.
     pub pusher: Option<usize>,
     /// Displacement of the fixed contact on its spring.
     pub fixed: Option<usize>,
@@ -89,7 +78,6 @@ impl Assembly {
         all
     }
 
-    /// Adds the contacts.
     fn contacts(&mut self, (scene, modes, preload): (&Scene, &[Mode], &Preload), laws: Laws) {
         let port = self.port(Port::new(modes, |mode| mode.tip));
         let contact = |law: Law| {
@@ -136,7 +124,6 @@ impl Assembly {
         }
     }
 
-    /// Adds the stops of the armature and its magnet.
     fn armature(&mut self, armature: &Armature, modes: &[Mode], preload: &Preload) {
         let port = self.port(Port::new(modes, |mode| mode.armature));
         let at = preload.armature;

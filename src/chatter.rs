@@ -29,13 +29,10 @@ impl Criterion {
 /// Interruptions and makes up to an instant: the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Interruptions {
-    /// Whether there is an interruption.
     pub in_progress: bool,
     /// Instant at which it began, or the make between two of them, s; `None`: closed since the start.
     turned: Option<f64>,
-    /// Completed interruptions.
     completed: Summary,
-    /// Completed makes.
     made: Summary,
 }
 

@@ -7,15 +7,12 @@ use crate::chatter::Interruptions;
 use crate::integrator::course::Places;
 use crate::link::{Link, MAX_LINKS};
 
-/// Most circuits.
 pub const CIRCUITS: usize = 2;
 
 /// What is counted of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Circuits {
-    /// Which links are interrupted.
     interrupted: [bool; MAX_LINKS],
-    /// Interruptions of each circuit so far.
     interruptions: [Interruptions; CIRCUITS],
 }
 
@@ -25,7 +22,6 @@ impl Circuits {
         self.interruptions.get(circuit).copied().unwrap_or_default()
     }
 
-    /// Whether a contact is interrupted.
     pub fn is_interrupted(&self, link: usize) -> bool {
         self.interrupted.get(link).is_some_and(|interrupted| *interrupted)
     }

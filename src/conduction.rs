@@ -6,7 +6,6 @@ use crate::link::CONTACT;
 use crate::model::Model;
 use crate::variables::RealOutput;
 
-/// What a circuit conducts.
 struct Conducting<'a> {
     electrical: &'a ElectricalContact,
     /// Its contact, and one parallel to it, each with its own law.

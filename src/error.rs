@@ -4,8 +4,6 @@
 use std::any::Any;
 use std::ops::Range;
 
-use crate::variables::Variable;
-
 /// A scene that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages tell what the fields are")]
@@ -217,11 +215,11 @@ pub enum Remark {
 }
 
 impl SceneError {
-    pub(crate) fn out_of_range(variable: &Variable, value: f64, allowed: String) -> Self {
+    pub(crate) fn out_of_range(name: &'static str, value: f64, unit: &'static str, allowed: String) -> Self {
         Self::OutOfRange {
-            name: variable.name,
+            name,
             value,
-            unit: variable.unit,
+            unit,
             allowed,
         }
     }
@@ -298,7 +296,6 @@ pub enum StepErrorCause {
     NotFinite,
 }
 
-/// The message of a panic.
 pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());

@@ -121,7 +121,6 @@ impl Model {
     }
 }
 
-/// The law of the first contact.
 fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError> {
     match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),

@@ -4,7 +4,7 @@
 use crate::error::SceneError;
 use crate::link::{INPUTS, Ways};
 use crate::scene::check_range;
-use crate::variables::RealInput;
+use crate::variables::{RealInput, Variable};
 use serde::{Deserialize, Serialize};
 
 include!(concat!(env!("OUT_DIR"), "/inputs.rs"));
@@ -32,8 +32,9 @@ impl Inputs {
     /// [`SceneError::OutOfRange`] for a value that is not finite; the inputs are then unchanged.
     pub fn set_rate(&mut self, input: RealInput, rate: f64) -> Result<(), SceneError> {
         if !rate.is_finite() {
-            let allowed = "allowed as derivative is any finite number";
-            return Err(SceneError::out_of_range(input.variable(), rate, allowed.to_owned()));
+            let Variable { name, unit, .. } = *input.variable();
+            let allowed = "allowed as derivative is any finite number".to_owned();
+            return Err(SceneError::out_of_range(name, rate, unit, allowed));
         }
         *self.course_mut(input).1 = rate;
         Ok(())

@@ -26,10 +26,8 @@ use crate::electrical::ElectricalContact;
 use crate::magnet::Magnet;
 use crate::math::simd::Arithmetic;
 
-/// Most ports of a model.
 pub const MAX_PORTS: usize = 6;
 
-/// Most links of a model.
 pub const MAX_LINKS: usize = 8;
 
 /// Most links whose forces are unknown at the same time.
@@ -81,7 +79,6 @@ impl Port {
     }
 }
 
-/// The law of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkLaw {
     /// A contact, which opens.
@@ -94,12 +91,10 @@ pub enum LinkLaw {
     Gauge,
 }
 
-/// A law at a port.
 #[derive(Clone, Copy, Debug)]
 pub struct Link {
     /// What the user calls it.
     pub name: &'static str,
-    /// The law.
     pub law: LinkLaw,
     /// The index of its port.
     pub port: usize,

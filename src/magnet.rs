@@ -6,7 +6,6 @@
 
 use crate::math::roots;
 
-/// Constants of a magnet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Magnet {
     /// Force at no gap and a relative current of 1, N.

@@ -35,23 +35,6 @@ const RUBBING: Range<f64> = 0.1..0.6;
 /// Damping of the lowest mode of a contact spring that is hardly ever reached, 1: the specimen of the paper has 0.34.
 const MOST_DAMPING: f64 = 0.5;
 
-/// What describes the uniform spring alone.
-const OF_UNIFORM: [RealParameter; 3] = [
-    RealParameter::BeamLength,
-    RealParameter::BeamWidth,
-    RealParameter::BeamThickness,
-];
-
-/// What springs by modes do not need, beside the material: what the spring carries, and where it is pushed.
-const CARRIED: [RealParameter; 3] = [
-    RealParameter::TipMass,
-    RealParameter::TipRotaryInertia,
-    RealParameter::PusherPosition,
-];
-
-/// The material, which may be that of the fixed contact's spring too.
-const MATERIAL: [RealParameter; 2] = [RealParameter::BeamYoungsModulus, RealParameter::BeamDensity];
-
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -61,9 +44,7 @@ pub struct Model {
     pub section: Section,
     /// The law of the first contact.
     pub law: Law,
-    /// Where forces act on the modes.
     pub(crate) ports: Vec<Port>,
-    /// The laws of these forces.
     pub(crate) links: Vec<Link>,
     /// Which link is what, beside the contact.
     pub(crate) roles: Roles,
@@ -84,7 +65,6 @@ pub struct Model {
     pub generator: Generator,
     /// What is part of the preload of the inputs at the start.
     pub(crate) initial: Initial,
-    /// The armature, if there is one.
     pub(crate) armature: Option<Armature>,
     /// Force scale of the tolerance, N: max(F_0, 3 E I max(|s|, 0.1 mm) / L^3).
     pub force_scale: f64,
@@ -98,14 +78,12 @@ pub struct Model {
     pub(crate) compliance: f64,
     /// Lowest natural frequency with the closed contacts as springs, Hz.
     pub frequency: f64,
-    /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and whether
-    /// it is the fixed contact's.
-    pub(crate) missed: Option<(f64, f64, bool)>,
+    /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and the file.
+    pub(crate) missed: Option<((f64, f64), StringParameter)>,
     /// Length of the spring, if it is known, m.
     pub(crate) spring_length: Option<f64>,
     /// The directions in which slip is unstable.
     pub(crate) unstable_slip: Vec<Unstable>,
-    /// The errors allowed.
     pub(crate) tolerance: Tolerance,
     /// Instruction set used for the steps.
     pub(crate) simd: Simd,
@@ -194,12 +172,20 @@ impl Model {
         none.then_some(Remark::NoInterruption { threshold, open })
     }
 
+    /// What does not describe the spring of a file, and is set all the same: the uniform section; beside modes also the material,
+    /// if no other spring is of it, and what the spring carries and where it is pushed.
     fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
+        use RealParameter::{BeamDensity, BeamLength, BeamThickness, BeamWidth, BeamYoungsModulus};
+        use RealParameter::{PusherPosition, TipMass, TipRotaryInertia};
         let by_modes = matches!(spring.shape, Shape::Modes(_));
-        let carried = CARRIED.into_iter().filter(move |_| by_modes);
         let shared = self.scene.fixed_spring.is_some();
-        let material = MATERIAL.into_iter().filter(move |_| by_modes && !shared);
-        let set = OF_UNIFORM.into_iter().chain(material).chain(carried);
+        let sizes = [
+            (true, &[BeamLength, BeamWidth, BeamThickness][..]),
+            (by_modes && !shared, &[BeamYoungsModulus, BeamDensity]),
+            (by_modes, &[TipMass, TipRotaryInertia, PusherPosition]),
+        ];
+        let others = sizes.into_iter().filter(|(is_other, _)| *is_other);
+        let set = others.flat_map(|(_, sizes)| sizes.iter().copied());
         let set = set.filter(|size| self.scene.real(*size) != size.variable().start);
         set.map(|size| Remark::NotUsed {
             name: size.variable().name,
@@ -234,12 +220,7 @@ impl Model {
     }
 
     fn few_modes(&self) -> Option<Remark> {
-        let (highest, reached, is_fixed) = self.missed?;
-        let parameter = if is_fixed {
-            StringParameter::FixedFile
-        } else {
-            StringParameter::BeamFile
-        };
+        let ((highest, reached), parameter) = self.missed?;
         Some(Remark::FewModes {
             name: parameter.variable().name,
             file: self.scene.string(parameter).to_owned(),
@@ -250,11 +231,8 @@ impl Model {
 
     /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
     pub(crate) fn room(&self, displacement: f64) -> f64 {
-        if self.roles.second.is_some() {
-            self.scene.second.gap - displacement - self.preload.indentation
-        } else {
-            f64::INFINITY
-        }
+        let left = self.scene.second.gap - displacement - self.preload.indentation;
+        self.roles.second.map_or(f64::INFINITY, |_| left)
     }
 
     /// Whether interruptions of a contact are counted.
@@ -279,11 +257,18 @@ impl Model {
             at.force = link.force;
             at.closed = link.contact().is_some() && link.force > 0.0;
         }
+        let sprung = self.friction().and_then(|(index, friction)| {
+            let stiffness = friction.ratio * self.preload.contact_stiffness;
+            (stiffness > 0.0).then_some(self.links.get(index)?.force / stiffness)
+        });
         let mut state = State {
             time,
             coil: self.initial.coil,
             links,
-            slip: self.initial_slip(),
+            slip: Slip {
+                way: sprung.unwrap_or_default(),
+                ..Slip::default()
+            },
             last_kink: time,
             lengths: StepLengths::new(self.first_step(time)),
             ..State::empty()
@@ -291,19 +276,6 @@ impl Model {
         let forces = state.links.iter().map(|link| link.force);
         state.circuits.note(&self.links, forces, time);
         state
-    }
-
-    /// Slip at the preload.
-    fn initial_slip(&self) -> Slip {
-        let sprung = self.friction().and_then(|(index, friction)| {
-            let stiffness = friction.ratio * self.preload.contact_stiffness;
-            let force = self.links.get(index)?.force;
-            (stiffness > 0.0).then(|| force / stiffness)
-        });
-        Slip {
-            way: sprung.unwrap_or_default(),
-            ..Slip::default()
-        }
     }
 
     /// Energy of a state relative to the preload, J.

@@ -191,11 +191,9 @@ impl<'a> Pressed<'a> {
             return (0.0, 0.0);
         };
         let by = self.springs.moving.statics.at_pusher(n);
-        let by_parallel = if parallel > 0.0 {
-            self.springs.at_parallel(n).pushed * parallel
-        } else {
-            0.0
-        };
+        let by_parallel = self
+            .parallel
+            .map_or(0.0, |_| self.springs.at_parallel(n).pushed * parallel);
         // Friction turns the spring as it presses the contact.
         let lever = self.share.map_or(0.0, |share| share * self.scene.tip.contact_height);
         // Of the spring without the pusher, which is where it pushes.
@@ -213,16 +211,9 @@ impl<'a> Pressed<'a> {
     fn loaded(&self, forces: [f64; 2], n: f64) -> f64 {
         let statics = &self.springs.moving.statics;
         let by_gravity = statics.gravity_compliance(n) * self.scene.environment.gravity;
-        let [_, parallel] = forces;
-        let alone = if parallel > 0.0 {
-            by_gravity + self.springs.at_parallel(n).across * parallel
-        } else {
-            by_gravity
-        };
-        match self.pushed {
-            Some(_) => alone - statics.at_pusher(n).across * self.press(forces, n).0,
-            None => alone,
-        }
+        let by_parallel = |_| self.springs.at_parallel(n).across * forces[1];
+        let by_pusher = |_| statics.at_pusher(n).across * self.press(forces, n).0;
+        by_gravity + self.parallel.map_or(0.0, by_parallel) - self.pushed.map_or(0.0, by_pusher)
     }
 
     /// Indentation of the parallel contact with this force (N) in an equilibrium with it, m.

@@ -33,7 +33,6 @@ impl<T> Shared<T> {
         Self { value, home }
     }
 
-    /// How many shares there are.
     fn count(&self) -> usize {
         // One more is at home.
         Arc::strong_count(&self.value) - 1

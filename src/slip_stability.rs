@@ -50,7 +50,6 @@ const MOST_PIECES: u32 = 3000;
 /// Slip in a direction in which it is unstable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unstable {
-    /// The direction.
     pub(crate) slip: Phase,
     /// The usual contact force, N.
     usual: f64,
@@ -86,7 +85,6 @@ impl Unstable {
 /// What was found, by modes, friction, law and usual force (N).
 pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Unstable>>;
 
-/// Where that is.
 pub(crate) static KNOWN: Home<Known> = Home::new();
 
 /// Unstable slip, in each direction in which it is, about the usual contact force (N).
@@ -141,7 +139,6 @@ struct Loop<'a> {
 /// The least and the greatest value of something.
 type Range = [f64; 2];
 
-/// Range of a product.
 fn product([a, b]: Range, [c, d]: Range) -> Range {
     let all = [a * c, a * d, b * c, b * d];
     [
@@ -150,7 +147,6 @@ fn product([a, b]: Range, [c, d]: Range) -> Range {
     ]
 }
 
-/// Adds a range.
 fn add(sum: &mut Range, range: Range) {
     for (sum, value) in sum.iter_mut().zip(range) {
         *sum += value;

@@ -170,7 +170,6 @@ impl State {
         self.iterations = *iterations;
     }
 
-    /// Whether a contact has just closed.
     pub(crate) fn touches_now(&self) -> bool {
         self.kink_is_closing && self.last_kink == self.time
     }

@@ -36,7 +36,6 @@ pub struct Given {
 }
 
 impl Given {
-    /// The modes of a file.
     pub fn new(spring: &Modes) -> Self {
         let mut modes = spring.modes.clone();
         modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
@@ -64,7 +63,6 @@ impl Given {
         (self.modes.len() + self.residuals()).min(MAX_MODES)
     }
 
-    /// Residual flexibilities among them.
     pub fn residuals(&self) -> usize {
         if self.parallel_compliance > 0.0 { 2 } else { 1 }
     }
@@ -122,13 +120,8 @@ impl Given {
             .count();
         let in_function = move |i: usize, k: usize| kept < self.modes.len() && i + LANES == kept + k;
         modes.iter().enumerate().map(move |(i, mode)| {
-            std::array::from_fn(|k| {
-                if in_function(i, k) {
-                    mode.omega_squared.sqrt()
-                } else {
-                    0.0
-                }
-            })
+            let root = mode.omega_squared.sqrt();
+            std::array::from_fn(|k| if in_function(i, k) { root } else { 0.0 })
         })
     }
 

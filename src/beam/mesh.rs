@@ -7,7 +7,6 @@
 use crate::beam::pieces::Pieces;
 use crate::math::legendre;
 
-/// The pieces with their nodes.
 pub struct Mesh {
     stretches: Vec<Stretch>,
     before_contact: usize,
@@ -251,7 +250,6 @@ impl Mesh {
         })
     }
 
-    /// A sum of shapes with factors.
     pub fn sum<'a>(&self, parts: impl Iterator<Item = (f64, &'a Bend)>) -> Bend {
         let mut moment = vec![0.0; self.stretches.len() * self.rule.len()];
         let mut clamp = 0.0;
@@ -321,7 +319,6 @@ impl Rule {
     }
 }
 
-/// Scalar product.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

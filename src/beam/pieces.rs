@@ -3,7 +3,7 @@
 use crate::beam::section::Section;
 use crate::math::legendre;
 use crate::scene::Scene;
-use crate::scene::spring::{Segment, Segments};
+use crate::scene::spring::Segments;
 
 /// Largest ratio of thickness or width between the ends of a piece: 16 nodes then represent `1 / (E I)` to rounding,
 /// whose poles lie 4.3 half-lengths from the middle.
@@ -64,10 +64,11 @@ impl Piece {
     /// In pieces that taper little.
     fn graded(self, into: &mut Vec<Self>) {
         let ratio = |[start, end]: [f64; 2]| (end / start).max(start / end);
-        let most = if ratio(self.thickness) > ratio(self.width) {
-            self.thickness
+        let (width, thickness) = (self.width, self.thickness);
+        let most = if ratio(thickness) > ratio(width) {
+            thickness
         } else {
-            self.width
+            width
         };
         let [start, end] = most;
         if ratio(most) <= TAPER {
@@ -81,13 +82,11 @@ impl Piece {
 
     /// Wave number of a unit frequency, integrated over the length: what counts of the length to a wave.
     fn phase(&self) -> f64 {
-        let sum: f64 = legendre::gauss(4)
-            .map(|(x, weight)| {
-                let (stiffness, mass) = self.section(f64::midpoint(x, 1.0));
-                weight * (mass / stiffness).sqrt().sqrt()
-            })
-            .sum();
-        0.5 * self.length * sum
+        let nodes = legendre::gauss(4).map(|(x, weight)| {
+            let (stiffness, mass) = self.section(f64::midpoint(x, 1.0));
+            weight * (mass / stiffness).sqrt().sqrt()
+        });
+        0.5 * self.length * nodes.sum::<f64>()
     }
 }
 
@@ -110,16 +109,23 @@ impl Pieces {
         let same = SAME * spring.length();
         let contact = spring.contact_position.unwrap_or(spring.length());
         let masses = spring.masses.iter().map(|at| (at.position, at.mass, at.rotary_inertia));
-        let mut carried: Vec<_> = masses
-            .chain([(contact, scene.tip.mass, scene.tip.rotary_inertia)])
-            .chain(scene.pushed_at().map(|position| (position, 0.0, 0.0)))
-            .collect();
+        let masses = masses.chain([(contact, scene.tip.mass, scene.tip.rotary_inertia)]);
+        let pushed = scene.pushed_at().map(|position| (position, 0.0, 0.0));
+        let mut carried: Vec<_> = masses.chain(pushed).collect();
         carried.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut pieces = Vec::new();
         let mut start = 0.0;
         for segment in &spring.segments {
             let end = start + segment.length;
-            let mut rest = whole(segment, scene);
+            let mut rest = Piece {
+                length: segment.length,
+                width: segment.width,
+                thickness: segment.thickness,
+                youngs_modulus: segment.youngs_modulus.unwrap_or(scene.beam.youngs_modulus),
+                density: segment.density.unwrap_or(scene.beam.density),
+                mass: 0.0,
+                inertia: 0.0,
+            };
             for &(position, ..) in carried.iter().filter(|(at, ..)| *at < end - same) {
                 let share = 1.0 - (end - position) / rest.length;
                 if share * rest.length > same {
@@ -136,10 +142,8 @@ impl Pieces {
             let start = end;
             end += piece.length;
             ends.push(end);
-            let here = carried
-                .iter()
-                .filter(|(at, ..)| *at > start + same && *at <= end + same);
-            for (_, mass, inertia) in here {
+            let here = |at: f64| at > start + same && at <= end + same;
+            for (_, mass, inertia) in carried.iter().filter(|(at, ..)| here(*at)) {
                 piece.mass += mass;
                 piece.inertia += inertia;
             }
@@ -165,20 +169,15 @@ impl Pieces {
         };
         let section = last.section(1.0);
         let same = |piece: &Piece| piece.section(0.0) == section && piece.section(1.0) == section;
-        !self.goes_on()
-            && same(last)
-            && others
-                .iter()
-                .all(|piece| same(piece) && piece.mass == 0.0 && piece.inertia == 0.0)
+        let bare = |piece: &Piece| same(piece) && piece.mass == 0.0 && piece.inertia == 0.0;
+        !self.goes_on() && same(last) && others.iter().all(bare)
     }
 
     /// Mass of the spring and all it carries, kg.
     pub fn mass(&self) -> f64 {
         let mass = |piece: &Piece| {
-            let sum: f64 = legendre::gauss(2)
-                .map(|(x, weight)| weight * piece.section(f64::midpoint(x, 1.0)).1)
-                .sum();
-            0.5 * piece.length * sum + piece.mass
+            let nodes = legendre::gauss(2).map(|(x, weight)| weight * piece.section(f64::midpoint(x, 1.0)).1);
+            0.5 * piece.length * nodes.sum::<f64>() + piece.mass
         };
         self.parts.iter().map(mass).sum()
     }
@@ -216,18 +215,5 @@ impl Pieces {
         });
         let widest = widest.fold(0.0, f64::max);
         (0.51 * count * widest).min(count).ceil() as usize + SPARE_NODES
-    }
-}
-
-/// The segment in one piece, with the materials of the scene where it has none of its own.
-fn whole(segment: &Segment, scene: &Scene) -> Piece {
-    Piece {
-        length: segment.length,
-        width: segment.width,
-        thickness: segment.thickness,
-        youngs_modulus: segment.youngs_modulus.unwrap_or(scene.beam.youngs_modulus),
-        density: segment.density.unwrap_or(scene.beam.density),
-        mass: 0.0,
-        inertia: 0.0,
     }
 }

@@ -103,22 +103,28 @@ impl Spring {
 
     /// Axial force at a deflection of the tip (m), N.
     pub fn axial_force(&self, scene: &Scene, y: f64) -> f64 {
-        match (scene.effects.axial_force, &self.form) {
-            (AxialForceKind::None, _) | (_, Form::Modes(_)) => 0.0,
-            (AxialForceKind::FromPreload | AxialForceKind::FromDeflection, _) => {
+        match scene.effects.axial_force {
+            _ if self.given().is_some() => 0.0,
+            AxialForceKind::None => 0.0,
+            AxialForceKind::Prescribed => scene.beam.axial_force,
+            AxialForceKind::FromPreload | AxialForceKind::FromDeflection => {
                 axial_force_from_deflection(&self.section, y)
             }
-            (AxialForceKind::Prescribed, _) => scene.beam.axial_force,
+        }
+    }
+
+    /// The modes, where they are given.
+    fn given(&self) -> Option<&Given> {
+        match &self.form {
+            Form::Modes(given) => Some(given),
+            Form::Uniform | Form::Segments(_) => None,
         }
     }
 
     /// Length, of a spring of segments that of the uniform one with the same deflection and slope under a load at the
     /// contact, m; modes do not tell it.
     pub fn length(&self) -> Option<f64> {
-        match self.form {
-            Form::Uniform | Form::Segments(_) => Some(self.section.length),
-            Form::Modes(_) => None,
-        }
+        self.given().is_none().then_some(self.section.length)
     }
 
     /// Number of modes for a tolerance; all where they are given.
@@ -136,24 +142,18 @@ impl Spring {
 
     /// Residual flexibilities among its modes, where they are given.
     pub fn residuals(&self) -> usize {
-        match &self.form {
-            Form::Uniform | Form::Segments(_) => 0,
-            Form::Modes(given) => given.residuals(),
-        }
+        self.given().map_or(0, Given::residuals)
     }
 
     /// The highest frequency of the modes given, and that up to which a blow excites the spring, if it is higher, Hz.
     pub fn missed(&self, blow: &Blow) -> Option<(f64, f64)> {
-        match &self.form {
-            Form::Uniform | Form::Segments(_) => None,
-            Form::Modes(given) => given.missed(blow),
-        }
+        self.given()?.missed(blow)
     }
 
     /// The damped modes under an axial compression (N); `None` at or above the buckling load.
     pub fn modes(&self, scene: &Scene, count: usize, axial_force: f64) -> Option<Basis> {
         let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
-        if let Form::Modes(given) = &self.form {
+        if let Some(given) = self.given() {
             let modes = given.modes(count, (alpha, beta));
             return Some(Basis {
                 space: given.space(&modes),
@@ -230,7 +230,6 @@ type Asked = (usize, f64, bool);
 /// Modes with their shapes in a space.
 type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
-/// Where that is.
 pub static KNOWN: Home<Known> = Home::new();
 
 /// The uniform section as a spring of one segment.
@@ -250,7 +249,6 @@ fn uniform(beam: &Beam) -> Segments {
 /// Of springs that a mode is not of.
 const NONE: Last = [0.0; LANES];
 
-/// The last entries of a shape.
 fn last_of(shape: &DVector<f64>) -> Last {
     let place = |k: usize| (shape.len() + k).checked_sub(LANES);
     std::array::from_fn(|k| place(k).and_then(|place| shape.get(place)).copied().unwrap_or_default())

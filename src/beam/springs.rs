@@ -24,16 +24,14 @@ use crate::beam::tongues;
 use crate::contact::friction::tangential_share;
 use crate::math::simd::LANES;
 use crate::scene::Scene;
-use crate::variables::PusherKind;
+use crate::variables::{PusherKind, StringParameter};
 
 /// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
 /// share, is less than rounding of the compliance.
 const FREQUENCY_MODES: usize = 32;
 
-/// The springs of a scene.
 #[derive(Clone, Debug)]
 pub struct Springs {
-    /// The moving one.
     pub moving: Spring,
     /// That of the fixed contact, if it is not rigid.
     pub fixed: Option<Beside>,
@@ -65,7 +63,6 @@ fn within([moving, fixed, tongues]: Counts, room: usize) -> Counts {
 }
 
 impl Springs {
-    /// Those of a scene.
     pub fn new(scene: &Scene) -> Self {
         Self {
             moving: Spring::new(scene),
@@ -139,14 +136,16 @@ impl Springs {
     }
 
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
-    /// Hz; and whether it is the fixed contact's.
-    pub fn missed(&self, blow: &Blow) -> Option<(f64, f64, bool)> {
-        let fixed = || {
+    /// Hz; and the file of the spring.
+    pub fn missed(&self, blow: &Blow) -> Option<((f64, f64), StringParameter)> {
+        let moving = self
+            .moving
+            .missed(blow)
+            .map(|missed| (missed, StringParameter::BeamFile));
+        moving.or_else(|| {
             let fixed = self.fixed.as_ref()?;
-            Some((fixed.spring.missed(&fixed.blow(blow))?, true))
-        };
-        let missed = self.moving.missed(blow).map(|missed| (missed, false)).or_else(fixed);
-        missed.map(|((highest, reached), is_fixed)| (highest, reached, is_fixed))
+            Some((fixed.spring.missed(&fixed.blow(blow))?, StringParameter::FixedFile))
+        })
     }
 
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is

@@ -48,7 +48,6 @@ struct Term {
 }
 
 impl Term {
-    /// All of a space.
     fn of(space: Space) -> Vec<Self> {
         let eigen = space.geometric.symmetric_eigen();
         let shapes = eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter());

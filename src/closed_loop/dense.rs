@@ -24,7 +24,6 @@ pub struct DensePropagator {
 }
 
 impl DensePropagator {
-    /// Room for so many oscillators.
     pub(crate) fn room(oscillators: usize) -> Self {
         let none = [[0.0; LONG]; 2];
         Self {

@@ -17,7 +17,6 @@ const CLOSE: f64 = 1e-1;
 const CROWDED: f64 = 1e-2;
 /// Relative imaginary part below which a zero is taken to be real or one of a close pair.
 const REAL: f64 = 1e-4;
-/// Largest number of iterations.
 const ROUNDS: usize = 100;
 /// Terms of the power series about a close pair.
 const TERMS: usize = 12;

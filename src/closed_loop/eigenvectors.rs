@@ -22,22 +22,17 @@ pub struct Component {
 pub struct EigenPair {
     /// The oscillator without loads: nu is the product of the zeros, c minus their sum.
     pub oscillator: Oscillator,
-    /// Mode by mode.
     pub components: Vec<Component>,
 }
 
 impl Problem {
     /// The eigenvalues and eigenvectors, a pair for each mode; `None` if they cannot be separated.
     pub fn solve(&self) -> Option<Vec<EigenPair>> {
-        let pairs = eigenvalues::pairs(self)?;
-        Some(pairs.iter().map(|pair| self.eigen_pair(pair)).collect())
-    }
-
-    fn eigen_pair(&self, pair: &Pair) -> EigenPair {
-        match pair {
+        let solved = |pair: &Pair| match pair {
             Pair::Close(root) => self.close_pair(*root),
             Pair::Apart(slow, fast) => self.pair_apart(slow, fast),
-        }
+        };
+        Some(eigenvalues::pairs(self)?.iter().map(solved).collect())
     }
 
     fn close_pair(&self, root: Root<Number>) -> EigenPair {

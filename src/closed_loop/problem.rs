@@ -12,7 +12,6 @@
 
 use std::ops::{Add, Div, Mul};
 
-/// The beam and its contact.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// omega_i^2 and T_i of the modes of the cantilever, frequency ascending.
@@ -38,7 +37,6 @@ pub struct Root<T> {
     pub contact: T,
 }
 
-/// A pair of zeros.
 #[derive(Clone, Copy, Debug)]
 pub enum Pair {
     /// Complex conjugates, equal, or real and close to each other.

@@ -17,7 +17,6 @@ use crate::excitation::generator::Generator;
 use crate::excitation::waveform::turned;
 use crate::math::free_motion::FreeMotion;
 
-/// The motion over a step.
 #[derive(Clone, Debug, Zeroable)]
 pub struct Propagator {
     /// Free motion of each oscillator: displacement and velocity at the end per displacement and velocity at the start.
@@ -64,7 +63,6 @@ pub struct ByLength<T> {
 }
 
 impl<T> ByLength<T> {
-    /// Room for so many lengths.
     pub(crate) fn new(room: usize, empty: impl Fn() -> T) -> Self {
         Self {
             kept: (0..room).map(|_| (0.0, empty())).collect(),

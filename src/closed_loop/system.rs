@@ -63,7 +63,6 @@ impl Columns {
         Self { size, entries }
     }
 
-    /// The product with a motion.
     pub(crate) fn times(&self, simd: Simd, factors: &Coordinates) -> Coordinates {
         compiled_for!(simd, A => self.compute::<A>(factors))
     }

@@ -41,7 +41,6 @@ use crate::beam::mode::Mode;
 use crate::contact::power::{Power, compliance};
 use crate::scene::{Contact, Material, Scene};
 
-/// Constants of friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     /// Coefficient mu.
@@ -56,7 +55,6 @@ pub struct Friction {
     pub(crate) inertia: f64,
 }
 
-/// Whether the contact slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// It sticks, or is open.
@@ -90,7 +88,6 @@ impl Phase {
 pub struct Slip {
     /// Slip s = v - z since the preload, m; z: deflection of the tangential spring.
     pub way: f64,
-    /// Whether it slips.
     pub phase: Phase,
     /// Distance slipped so far, m.
     pub distance: f64,

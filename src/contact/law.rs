@@ -146,10 +146,7 @@ impl Law {
 
     /// Tangent stiffness under `force` (N), N/m.
     pub fn tangent_stiffness(&self, force: f64) -> f64 {
-        match self {
-            Self::Power(power) => power.tangent_stiffness(power.indentation(force)),
-            Self::Linear(linear) => linear.stiffness,
-        }
+        self.stiffness(self.overlap(force))
     }
 
     /// Tangent stiffness of the closed contact as a power of the elastic force: factor (at 1 N, N/m) and exponent (1).

@@ -21,7 +21,6 @@ pub struct Turns<const S: usize> {
 }
 
 impl<const S: usize> Turns<S> {
-    /// Room for them.
     pub const NONE: Self = Self {
         rotation: [[0.0; S]; 2],
         times: [0.0; S],

@@ -16,7 +16,6 @@ use crate::math::nodal::{Nodal, add, add_products};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
 
-/// Number of sines.
 pub const SINES: usize = 256;
 
 /// Partial sums computed in parallel.
@@ -32,7 +31,6 @@ const STRIDE: f64 = 3.75;
 /// ends; what is left out is at most `2 J_40(z) + 2 J_41(z) + ... < 2e-16` of each amplitude.
 const TERMS: usize = 40;
 
-/// A value for each sine.
 type Each = [f64; SINES];
 
 /// `a sin(2 pi (f_j tau + p_j))` summed over j, `tau = t - t0 >= 0`.

@@ -24,12 +24,9 @@ impl Sine {
     /// From the start time on: Machines 2025, 13(1), 52, eqs. (26), (27), with the amplitude within the displacement
     /// limit.
     pub fn new(excitation: &Excitation) -> Self {
+        let limit = displacement_limit(excitation);
         Self {
-            amplitude: limited(
-                excitation.amplitude,
-                displacement_limit(excitation),
-                excitation.frequency,
-            ),
+            amplitude: limited(excitation.amplitude, limit, excitation.frequency),
             frequency: excitation.frequency,
             phase: excitation.phase,
             window: Window::from(excitation.start_time),
@@ -74,11 +71,8 @@ impl Sine {
 
     /// The next instant after `time` (s) at which it begins, has risen or ends.
     pub fn next_break(&self, time: f64) -> Option<f64> {
-        if self.rises(time) {
-            Some(self.risen())
-        } else {
-            self.window.next_end(time)
-        }
+        let risen = self.rises(time).then(|| self.risen());
+        risen.or_else(|| self.window.next_end(time))
     }
 
     /// Sine and cosine of the phase at `time` (s), times the amplitude once it has risen.

@@ -9,7 +9,7 @@ use libc::size_t;
 use super::entry::{array, array_mut, call};
 use super::failure::Failure;
 use super::instance::Instance;
-use super::instance::variables::Value;
+use super::instance::variables::{Value, find};
 use super::states;
 use super::types::{fmi2Component, fmi2Real, fmi2Status, fmi2ValueReference, fmi2Warning};
 
@@ -84,7 +84,7 @@ fn follow(
             instance.fail(states::DO_STEP, &failure);
         }
         for (&output, value) in outputs.iter().zip(values.by_ref()) {
-            value.write(instance.number(output)?);
+            value.write(instance.number(find("Real", output)?)?);
         }
     }
     Ok(())

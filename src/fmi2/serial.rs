@@ -67,9 +67,6 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Result<Snapshot, Failure> {
         return Err(wrong("its checksum is wrong: bytes have changed".to_owned()));
     }
     let snapshot: Snapshot = postcard::from_bytes(contents).map_err(|error| wrong(error.to_string()))?;
-    if snapshot.is_sound() {
-        Ok(snapshot)
-    } else {
-        Err(wrong("no simulation can reach such a state".to_owned()))
-    }
+    let sound = snapshot.is_sound().then_some(snapshot);
+    sound.ok_or_else(|| wrong("no simulation can reach such a state".to_owned()))
 }

@@ -60,7 +60,6 @@ impl<const N: usize> Roots<N> {
 }
 
 impl FreeMotion {
-    /// After no time.
     const AT_ONCE: Self = Self {
         q_from_q: 1.0,
         q_from_v: 0.0,
@@ -114,11 +113,7 @@ impl FreeMotion {
         // Where the difference of exponentials needs care, or the quotient of sine and angle.
         let is_easy = |i: usize| {
             let angle = split[i] * times[i];
-            if creeps[i] {
-                angle > 0.25
-            } else {
-                angle > 0.0 && angle < LARGEST_ANGLE
-            }
+            angle > if creeps[i] { 0.25 } else { 0.0 } && (creeps[i] || angle < LARGEST_ANGLE)
         };
         if !(0..N).all(is_easy) {
             return array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i]));
@@ -127,14 +122,10 @@ impl FreeMotion {
         let (mut of_v, mut of_q) = ([0.0; N], [0.0; N]);
         for i in 0..N {
             let half = 0.5 * damping[i];
-            decays[i] = if creeps[i] {
-                -slow[i] * times[i]
-            } else {
-                -half * times[i]
-            };
             faster[i] = if creeps[i] { -fast[i] * times[i] } else { 0.0 };
             angles[i] = if creeps[i] { 0.0 } else { split[i] * times[i] };
             of_v[i] = if creeps[i] { slow[i] } else { half };
+            decays[i] = -of_v[i] * times[i];
             of_q[i] = if creeps[i] { fast[i] } else { half };
         }
         let decays = exp::<N, A>(&decays);

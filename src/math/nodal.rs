@@ -3,13 +3,10 @@
 
 use crate::math::simd::Arithmetic;
 
-/// Nodes of a short step.
 pub const SHORT: usize = 4;
 
-/// Nodes of a long step.
 pub const LONG: usize = 8;
 
-/// A value at each node.
 pub type Nodal<const S: usize> = [f64; S];
 
 /// Nodal values of which one differs from the others.

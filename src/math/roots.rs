@@ -70,12 +70,8 @@ pub fn newton(f: impl Fn(f64) -> (f64, f64), a: (f64, f64), b: (f64, f64), resol
             &mut high
         };
         *end = x;
-        let next = x - value / slope;
-        let next = if low <= next && next <= high {
-            next
-        } else {
-            0.5 * (low + high)
-        };
+        let (next, middle) = (x - value / slope, 0.5 * (low + high));
+        let next = if low <= next && next <= high { next } else { middle };
         let change = next - x;
         x = next;
         // Its square, times the curvature over the slope, is what is still missing.

@@ -10,7 +10,6 @@ pub const LANES: usize = 4;
 /// Instruction set of the kernel of a step.
 #[derive(Clone, Copy, Debug)]
 pub enum Simd {
-    /// Generic processor.
     Portable,
     /// AVX2 and FMA; the token proves that the processor has them.
     #[cfg(target_arch = "x86_64")]
@@ -86,7 +85,6 @@ macro_rules! compiled_for {
     };
 }
 
-/// Calls a function out of line.
 #[inline(never)]
 pub(crate) fn apart<R>(function: impl FnOnce() -> R) -> R {
     function()

@@ -46,12 +46,8 @@ impl Scene {
             refuse(follows && has, &axial, CONSTANT, beside)?;
         }
         let unknown = effects.resistance == ResistanceKind::None;
-        refuse(
-            effects.chatter && unknown,
-            "effects.chatter = true",
-            "false",
-            NO_RESISTANCE,
-        )?;
+        let counted = effects.chatter && unknown;
+        refuse(counted, "effects.chatter = true", "false", NO_RESISTANCE)?;
         // What the fixed contact's spring need not know is where others touch the moving one.
         let springs = [
             ("beam.file", &self.spring, true),
@@ -95,16 +91,15 @@ impl Scene {
             let allowed = format!("more than armature.restPosition = {} m", number(rest));
             (RealParameter::ArmatureCorePosition, allowed)
         } else if self.effects.excitation == ExcitationKind::Random && highest <= lowest {
-            let allowed = format!(
-                "above excitation.frequency = {} Hz, as a band has a width",
-                number(lowest)
-            );
+            let lowest = number(lowest);
+            let allowed = format!("above excitation.frequency = {lowest} Hz, as a band has a width");
             (RealParameter::ExcitationEndFrequency, allowed)
         } else {
             return Ok(());
         };
         let (value, allowed) = (self.real(parameter), format!("allowed is {allowed}"));
-        Err(SceneError::out_of_range(parameter.variable(), value, allowed))
+        let variable = parameter.variable();
+        Err(SceneError::out_of_range(variable.name, value, variable.unit, allowed))
     }
 }
 

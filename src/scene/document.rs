@@ -51,7 +51,6 @@ pub(crate) fn parsed(text: &str) -> Result<DeTable<'_>, SceneError> {
     document.map(Spanned::into_inner)
 }
 
-/// A value in a text.
 #[derive(Clone, Copy)]
 pub(crate) struct Value<'a> {
     pub(crate) text: &'a str,
@@ -136,7 +135,6 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// All keys with their values.
     pub(crate) fn values(&self) -> impl Iterator<Item = (&str, Value<'a>)> {
         let text = self.text;
         let pairs = self.table.iter();

@@ -195,10 +195,9 @@ impl SceneFile {
                 Ok(())
             }
             Group::IntegerParameter(parameter) => self.scene.set_integer(parameter, value.whole(name)?),
-            Group::BooleanParameter(parameter) => {
-                self.scene.set_boolean(parameter, value.boolean(name)?);
-                Ok(())
-            }
+            Group::BooleanParameter(parameter) => value
+                .boolean(name)
+                .map(|value| self.scene.set_boolean(parameter, value)),
             Group::StringParameter(parameter) => {
                 let file = value.string(name, "a string")?;
                 self.scene.set_string(parameter, file, &self.folder)
@@ -224,11 +223,7 @@ fn positive(name: &'static str, value: Value) -> Result<f64, SceneError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        Err(SceneError::OutOfRange {
-            name,
-            value,
-            unit: "s",
-            allowed: "allowed is any positive finite number".into(),
-        })
+        let allowed = "allowed is any positive finite number".to_owned();
+        Err(SceneError::out_of_range(name, value, "s", allowed))
     }
 }

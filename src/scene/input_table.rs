@@ -12,7 +12,7 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use crate::error::SceneError;
+use crate::error::{self, SceneError};
 use crate::inputs::Inputs;
 use crate::scene::check_range;
 use crate::scene::document::{located, of_file};
@@ -60,7 +60,6 @@ impl InputTable {
         Ok(table)
     }
 
-    /// Adds a row.
     fn add(&mut self, columns: &[Column], record: &StringRecord) -> Result<(), SceneError> {
         let mut rows = self.columns.iter_mut();
         for (column, field) in columns.iter().zip(record) {
@@ -69,15 +68,9 @@ impl InputTable {
                     let time = number("time", field)?;
                     let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
                     if !(time > last && time.is_finite()) {
-                        return Err(SceneError::OutOfRange {
-                            name: "time",
-                            value: time,
-                            unit: "s",
-                            allowed: format!(
-                                "allowed is any finite number above that of the previous row, {} s",
-                                crate::error::number(last)
-                            ),
-                        });
+                        let last = error::number(last);
+                        let allowed = format!("allowed is any finite number above that of the previous row, {last} s");
+                        return Err(SceneError::out_of_range("time", time, "s", allowed));
                     }
                     self.times.push(time);
                 }
@@ -98,7 +91,7 @@ impl InputTable {
     pub(crate) fn check_overlap(&self, stop: f64) -> Result<(), SceneError> {
         match (self.times.first(), self.times.last()) {
             (Some(first), Some(last)) if *first >= stop || *last < 0.0 => {
-                let [first, last, stop] = [*first, *last, stop].map(crate::error::number);
+                let [first, last, stop] = [*first, *last, stop].map(error::number);
                 Err(SceneError::InputTable(format!(
                     "time = {first} to {last} s: the run lasts from 0 to {stop} s"
                 )))
@@ -125,13 +118,9 @@ impl InputTable {
     /// them over.
     pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
         if let Some(distance) = self.passed_over(time, size) {
-            let distance = crate::error::number(distance);
-            return Err(SceneError::OutOfRange {
-                name: "communicationStep",
-                value: size,
-                unit: "s",
-                allowed: format!("allowed is the time between two rows of the input table, {distance} s"),
-            });
+            let distance = error::number(distance);
+            let allowed = format!("allowed is the time between two rows of the input table, {distance} s");
+            return Err(SceneError::out_of_range("communicationStep", size, "s", allowed));
         }
         self.columns.iter().try_for_each(|(input, values)| {
             let value = self.value(values, time);
@@ -164,7 +153,6 @@ impl InputTable {
     }
 }
 
-/// The header.
 fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
     let mut seen = Vec::new();
     let columns = head.iter().map(|name| {

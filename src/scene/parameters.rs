@@ -17,7 +17,6 @@ use crate::variables::{
 include!(concat!(env!("OUT_DIR"), "/scene.rs"));
 
 impl Scene {
-    /// Whether the contact rubs.
     pub(crate) fn rubs(&self) -> bool {
         self.effects.friction != FrictionKind::None
     }
@@ -36,10 +35,7 @@ impl Solver {
 
     /// The effective tolerance.
     pub fn effective_tolerance(&self) -> f64 {
-        if self.tolerance > 0.0 {
-            self.tolerance.max(Self::TOLERANCE_FLOOR)
-        } else {
-            Self::DEFAULT_TOLERANCE
-        }
+        let own = Some(self.tolerance).filter(|tolerance| *tolerance > 0.0);
+        own.map_or(Self::DEFAULT_TOLERANCE, |own| own.max(Self::TOLERANCE_FLOOR))
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::SceneError;
+use crate::error::{SceneError, number};
 
 /// The spring of a file, checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,16 +149,8 @@ impl Field {
         if min <= value && value <= max * (1.0 + ROUNDING) {
             return Ok(());
         }
-        Err(SceneError::OutOfRange {
-            name,
-            value,
-            unit,
-            allowed: format!(
-                "allowed is {} to {}",
-                crate::error::number(min),
-                crate::error::number(max)
-            ),
-        })
+        let allowed = format!("allowed is {} to {}", number(min), number(max));
+        Err(SceneError::out_of_range(name, value, unit, allowed))
     }
 
     fn check_any(self, value: Option<f64>) -> Result<(), SceneError> {
@@ -223,21 +215,16 @@ impl Segments {
 impl Segment {
     /// What a file tells of it.
     pub(crate) fn keys(&mut self) -> [Key<'_>; 5] {
-        let thickness = ["thickness_start", "thickness_end"];
+        let (width, thickness) = (["width_start", "width_end"], ["thickness_start", "thickness_end"]);
+        let modulus = field("youngs_modulus", "Pa", 1e8, 1e13);
         [
             (field("length", "m", 1e-6, 0.2), Slot::Needed(&mut self.length)),
-            (
-                field("width", "m", 1e-5, 1.0),
-                Slot::Ends(&mut self.width, ["width_start", "width_end"]),
-            ),
+            (field("width", "m", 1e-5, 1.0), Slot::Ends(&mut self.width, width)),
             (
                 field("thickness", "m", 1e-6, 5e-3),
                 Slot::Ends(&mut self.thickness, thickness),
             ),
-            (
-                field("youngs_modulus", "Pa", 1e8, 1e13),
-                Slot::Optional(&mut self.youngs_modulus),
-            ),
+            (modulus, Slot::Optional(&mut self.youngs_modulus)),
             (field("density", "kg/m3", 1.0, 1e5), Slot::Optional(&mut self.density)),
         ]
     }
@@ -246,13 +233,11 @@ impl Segment {
 impl PointMass {
     /// What a file tells of it, on a spring of this length (m).
     pub(crate) fn keys(&mut self, length: f64) -> [Key<'_>; 3] {
+        let inertia = field("rotary_inertia", "kg.m2", 0.0, 1e-4);
         [
             (field("position", "m", 1e-6, length), Slot::Needed(&mut self.position)),
             (field("mass", "kg", 0.0, 0.1), Slot::Needed(&mut self.mass)),
-            (
-                field("rotary_inertia", "kg.m2", 0.0, 1e-4),
-                Slot::OrZero(&mut self.rotary_inertia),
-            ),
+            (inertia, Slot::OrZero(&mut self.rotary_inertia)),
         ]
     }
 }
@@ -313,13 +298,11 @@ impl GivenMode {
     pub(crate) fn keys(&mut self) -> [Key<'_>; 7] {
         let displacement = |name| field(name, "1/sqrt(kg)", -1e9, 1e9);
         let rotation = field("rotation", "1/(m sqrt(kg))", -1e12, 1e12);
+        let participation = field("participation", "sqrt(kg)", -1.0, 1.0);
         [
             (field("frequency", "Hz", 1e-3, 1e9), Slot::Needed(&mut self.frequency)),
             (displacement("contact"), Slot::Needed(&mut self.contact)),
-            (
-                field("participation", "sqrt(kg)", -1.0, 1.0),
-                Slot::Needed(&mut self.participation),
-            ),
+            (participation, Slot::Needed(&mut self.participation)),
             (field("damping", "1", 0.0, 100.0), Slot::Optional(&mut self.damping)),
             (rotation, Slot::Optional(&mut self.rotation)),
             (displacement("pusher"), Slot::Optional(&mut self.pusher)),
@@ -345,10 +328,6 @@ pub(crate) fn count(name: &'static str, count: usize, least: usize) -> Result<()
     if (least..=MOST_ENTRIES).contains(&count) {
         return Ok(());
     }
-    Err(SceneError::OutOfRange {
-        name,
-        value: count as f64,
-        unit: "entries",
-        allowed: format!("allowed are {least} to {MOST_ENTRIES}"),
-    })
+    let allowed = format!("allowed are {least} to {MOST_ENTRIES}");
+    Err(SceneError::out_of_range(name, count as f64, "entries", allowed))
 }

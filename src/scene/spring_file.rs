@@ -81,7 +81,6 @@ pub(crate) fn text(path: &Path) -> Result<String, String> {
     Ok(text)
 }
 
-/// The spring of a text.
 fn shape(text: &str) -> Result<Shape, SceneError> {
     check_nesting(text)?;
     let document = parsed(text)?;

@@ -54,7 +54,10 @@ impl Scene {
     /// # Errors
     /// [`SceneError::OutOfRange`] outside the range of `modelDescription.xml`; the scene is then unchanged.
     pub fn set_real(&mut self, parameter: RealParameter, value: f64) -> Result<(), SceneError> {
-        check_range(parameter.variable(), value, bounds_excluded(parameter))?;
+        use RealParameter::{ContactFixedPoissonRatio, ContactMovingPoissonRatio};
+        // At a Poisson's ratio of -1 or 0.5 the moduli are not finite.
+        let excluded = matches!(parameter, ContactMovingPoissonRatio | ContactFixedPoissonRatio);
+        check_range(parameter.variable(), value, excluded)?;
         *self.real_mut(parameter) = value;
         Ok(())
     }
@@ -92,7 +95,7 @@ impl Scene {
         if longest > 0.0 && longest < SHORTEST_LIMIT {
             let variable = RealParameter::SolverMaximumStep.variable();
             let allowed = format!("allowed is 0 (no limit), or {} or more", number(SHORTEST_LIMIT));
-            return Err(SceneError::out_of_range(variable, longest, allowed));
+            return Err(SceneError::out_of_range(variable.name, longest, variable.unit, allowed));
         }
         for spring in self.spring.iter().chain(&self.fixed_spring) {
             spring.check()?;
@@ -109,23 +112,11 @@ impl Scene {
 /// Smallest limit of the integration step, s, so that the number of steps stays finite in practice.
 const SHORTEST_LIMIT: f64 = 1e-9;
 
-/// Whether the bounds of the range are excluded: at a Poisson's ratio of -1 or 0.5 the moduli are not finite.
-fn bounds_excluded(parameter: RealParameter) -> bool {
-    matches!(
-        parameter,
-        RealParameter::ContactMovingPoissonRatio | RealParameter::ContactFixedPoissonRatio
-    )
-}
-
 /// Rejects a value that is not a number or outside the range of its variable.
 pub(crate) fn check_range(variable: &Variable, value: f64, excluded: bool) -> Result<(), SceneError> {
     let Variable { min, max, .. } = *variable;
-    let inside = if excluded {
-        min < value && value < max
-    } else {
-        min <= value && value <= max
-    };
-    if inside && value.is_finite() {
+    let on_bound = value == min || value == max;
+    if (min..=max).contains(&value) && value.is_finite() && !(excluded && on_bound) {
         return Ok(());
     }
     let (least, greatest) = (number(min), number(max));
@@ -134,5 +125,5 @@ pub(crate) fn check_range(variable: &Variable, value: f64, excluded: bool) -> Re
         (true, true) => format!("allowed is {least} to {greatest}"),
         _ => "allowed is any finite number".to_owned(),
     };
-    Err(SceneError::out_of_range(variable, value, allowed))
+    Err(SceneError::out_of_range(variable.name, value, variable.unit, allowed))
 }

@@ -6,7 +6,6 @@ use super::Instance;
 use crate::error::SceneError;
 use crate::fmi2::failure::Failure;
 use crate::fmi2::states::State;
-use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::variables::{Group, Variable};
 
@@ -43,46 +42,29 @@ impl Instance {
     }
 
     pub(in crate::fmi2) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
-        let variable = find("Real", reference)?;
-        match variable.group {
-            Group::RealOutput(output) => Ok(self.computed(variable)?.real(output)),
-            Group::RealInput(input) => Ok(self.inputs.real(input)),
-            Group::RealParameter(parameter) => Ok(self.scene.real(parameter)),
-            _ if self.plain => self.number(reference),
-            _ => Err(wrong_type("Real", variable)),
-        }
+        self.number(self.typed("Real", reference)?)
     }
 
-    /// The value of a variable as a real: a choice by its number, true as 1.
-    pub(in crate::fmi2) fn number(&mut self, reference: u32) -> Result<f64, Failure> {
-        let variable = find("Real", reference)?;
-        match variable.group {
-            Group::RealOutput(_) | Group::RealInput(_) | Group::RealParameter(_) => self.real(reference),
-            Group::BooleanOutput(_) | Group::BooleanParameter(_) => {
-                self.boolean(reference).map(|value| f64::from(u8::from(value)))
-            }
-            Group::StringParameter(_) => Err(wrong_type("Real", variable)),
-            _ => self.integer(reference).map(f64::from),
-        }
-    }
-
+    #[expect(clippy::cast_possible_truncation, reason = "it was an integer")]
     pub(in crate::fmi2) fn integer(&mut self, reference: u32) -> Result<i32, Failure> {
-        let variable = find("Integer", reference)?;
-        match variable.group {
-            Group::IntegerOutput(output) => Ok(self.computed(variable)?.integer(output)),
-            Group::IntegerParameter(parameter) => Ok(self.scene.integer(parameter)),
-            Group::EnumerationParameter(parameter) => Ok(self.scene.enumeration(parameter)),
-            _ => Err(wrong_type("Integer", variable)),
-        }
+        self.number(self.typed("Integer", reference)?).map(|value| value as i32)
     }
 
     pub(in crate::fmi2) fn boolean(&mut self, reference: u32) -> Result<bool, Failure> {
-        let variable = find("Boolean", reference)?;
-        match variable.group {
-            Group::BooleanOutput(output) => Ok(self.computed(variable)?.boolean(output)),
-            Group::BooleanParameter(parameter) => Ok(self.scene.boolean(parameter)),
-            _ => Err(wrong_type("Boolean", variable)),
-        }
+        self.number(self.typed("Boolean", reference)?).map(|value| value != 0.0)
+    }
+
+    /// The value of a variable as a real: a choice by its number, true as 1.
+    pub(in crate::fmi2) fn number(&mut self, variable: &Variable) -> Result<f64, Failure> {
+        Ok(match variable.group {
+            Group::RealInput(input) => self.inputs.real(input),
+            Group::RealParameter(parameter) => self.scene.real(parameter),
+            Group::IntegerParameter(parameter) => self.scene.integer(parameter).into(),
+            Group::EnumerationParameter(parameter) => self.scene.enumeration(parameter).into(),
+            Group::BooleanParameter(parameter) => u8::from(self.scene.boolean(parameter)).into(),
+            Group::StringParameter(_) => return Err(wrong_type("Real", variable)),
+            _ => self.computed(variable)?.output(variable).unwrap_or_default(),
+        })
     }
 
     /// Sets inputs and parameters; all of them or, on an error, none.
@@ -94,33 +76,22 @@ impl Instance {
         let (mut scene, mut inputs) = (self.scene.clone(), self.inputs);
         for (&reference, value) in references.iter().zip(values) {
             let value = value?;
-            let variable = find(value.kind(), reference)?;
-            let fixed = || self.check_fixed(variable);
+            let variable = self.typed(value.kind(), reference)?;
+            self.check_settable(variable)?;
+            let value = discrete(variable, value).map_err(Failure::Value)?;
             let set = match (variable.group, value) {
                 (Group::RealInput(input), Value::Real(value)) => inputs.set_real(input, value),
-                (Group::RealParameter(parameter), Value::Real(value)) => {
-                    fixed().map(|()| scene.set_real(parameter, value))?
-                }
-                (Group::IntegerParameter(parameter), Value::Integer(value)) => {
-                    fixed().map(|()| scene.set_integer(parameter, value))?
-                }
+                (Group::RealParameter(parameter), Value::Real(value)) => scene.set_real(parameter, value),
+                (Group::IntegerParameter(parameter), Value::Integer(value)) => scene.set_integer(parameter, value),
                 (Group::EnumerationParameter(parameter), Value::Integer(value)) => {
-                    fixed().map(|()| scene.set_enumeration(parameter, value))?
+                    scene.set_enumeration(parameter, value)
                 }
                 (Group::BooleanParameter(parameter), Value::Boolean(value)) => {
-                    fixed().map(|()| scene.set_boolean(parameter, value))?;
+                    scene.set_boolean(parameter, value);
                     Ok(())
                 }
                 (Group::StringParameter(parameter), Value::Text(value)) => {
-                    fixed()?;
                     path_text(variable, value).and_then(|path| self.set_string(&mut scene, parameter, path))
-                }
-                (Group::RealOutput(_), Value::Real(_))
-                | (Group::IntegerOutput(_), Value::Integer(_))
-                | (Group::BooleanOutput(_), Value::Boolean(_)) => return Err(self.output_set(variable)),
-                (_, Value::Real(value)) if self.plain => {
-                    self.set_number(&mut scene, variable, value)?;
-                    Ok(())
                 }
                 _ => return Err(wrong_type(value.kind(), variable)),
             };
@@ -133,32 +104,39 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets an integer, a choice or a Boolean of the plain component, where it is a Real.
-    fn set_number(&self, scene: &mut Scene, variable: &Variable, value: f64) -> Result<(), Failure> {
-        let refused = |allowed: &str| SceneError::out_of_range(variable, value, format!("allowed is {allowed}"));
-        // As text, which a fraction and what is too large do not survive.
-        let whole = value.to_string().parse::<i32>().ok();
-        let whole = whole.ok_or_else(|| refused("a whole number"));
-        let set = match variable.group {
-            Group::IntegerParameter(parameter) => whole.and_then(|whole| scene.set_integer(parameter, whole)),
-            Group::EnumerationParameter(parameter) => whole.and_then(|whole| scene.set_enumeration(parameter, whole)),
-            Group::BooleanParameter(parameter) => match whole {
-                Ok(whole @ (0 | 1)) => {
-                    scene.set_boolean(parameter, whole == 1);
-                    Ok(())
-                }
-                _ => Err(refused("0 or 1")),
-            },
-            Group::IntegerOutput(_) | Group::BooleanOutput(_) => return Err(self.output_set(variable)),
-            _ => return Err(wrong_type("Real", variable)),
+    /// Refuses outputs, and fixed parameters after initialisation.
+    fn check_settable(&self, variable: &Variable) -> Result<(), Failure> {
+        let reason = match variable.group {
+            Group::RealInput(_) => return Ok(()),
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => {
+                "it is computed; inputs and parameters can be set"
+            }
+            _ if matches!(self.state, State::Instantiated | State::InitializationMode) => return Ok(()),
+            _ => "a fixed parameter can be set until initialisation ends",
         };
-        self.check_fixed(variable)?;
-        set.map_err(Failure::Value)
+        Err(Failure::NotSettable {
+            name: variable.name,
+            state: self.state,
+            reason,
+        })
+    }
+
+    /// The variable of this type; all numbers of the plain component are Reals.
+    fn typed(&self, kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
+        let variable = find(kind, reference)?;
+        let own = match variable.group {
+            Group::RealInput(_) | Group::RealParameter(_) | Group::RealOutput(_) => "Real",
+            Group::IntegerParameter(_) | Group::EnumerationParameter(_) | Group::IntegerOutput(_) => "Integer",
+            Group::BooleanParameter(_) | Group::BooleanOutput(_) => "Boolean",
+            Group::StringParameter(_) => "String",
+        };
+        let fits = own == kind || self.plain && kind == "Real" && own != "String";
+        fits.then_some(variable).ok_or_else(|| wrong_type(kind, variable))
     }
 
     /// The value of a string parameter, kept until it is read again: a call may ask for all, and for the same one twice.
     pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
-        let variable = find("String", reference)?;
+        let variable = self.typed("String", reference)?;
         let wrong = || wrong_type("String", variable);
         let Group::StringParameter(parameter) = variable.group else {
             return Err(wrong());
@@ -205,36 +183,31 @@ impl Instance {
     pub(in crate::fmi2) fn output_derivative(&mut self, reference: u32, order: i32) -> Result<f64, Failure> {
         let variable = find("Real", reference)?;
         let rate = match variable.group {
-            Group::RealOutput(output) => self.computed(variable)?.rate(output).unwrap_or_default(),
-            Group::IntegerOutput(_) | Group::BooleanOutput(_) if self.plain => {
-                self.computed(variable)?;
-                0.0
-            }
+            Group::RealOutput(output) => self.computed(variable)?.rate(output),
+            Group::IntegerOutput(_) | Group::BooleanOutput(_) if self.plain => self.computed(variable).map(|_| None)?,
             _ => return Err(no_derivative(variable, "outputs")),
         };
         first_order(variable, order)?;
-        Ok(rate)
+        Ok(rate.unwrap_or_default())
     }
+}
 
-    /// Fixed parameters can be set until initialisation ends.
-    fn check_fixed(&self, variable: &Variable) -> Result<(), Failure> {
-        match self.state {
-            State::Instantiated | State::InitializationMode => Ok(()),
-            state => Err(Failure::NotSettable {
-                name: variable.name,
-                state,
-                reason: "a fixed parameter can be set until initialisation ends",
-            }),
+/// A Real that stands for an integer, a choice or a Boolean as that: by its text, which fractions and what is too large do not survive.
+fn discrete<'a>(variable: &Variable, value: Value<'a>) -> Result<Value<'a>, SceneError> {
+    let Value::Real(real) = value else {
+        return Ok(value);
+    };
+    let whole = || real.to_string().parse().ok();
+    let (found, allowed) = match variable.group {
+        Group::IntegerParameter(_) | Group::EnumerationParameter(_) => (whole().map(Value::Integer), "a whole number"),
+        Group::BooleanParameter(_) => {
+            let either = whole().filter(|whole| (0..=1).contains(whole));
+            (either.map(|whole| Value::Boolean(whole == 1)), "0 or 1")
         }
-    }
-
-    fn output_set(&self, variable: &Variable) -> Failure {
-        Failure::NotSettable {
-            name: variable.name,
-            state: self.state,
-            reason: "it is computed; inputs and parameters can be set",
-        }
-    }
+        _ => return Ok(value),
+    };
+    let allowed = format!("allowed is {allowed}");
+    found.ok_or_else(|| SceneError::out_of_range(variable.name, real, variable.unit, allowed))
 }
 
 /// A path in UTF-8 of a length that systems allow.
@@ -253,7 +226,7 @@ fn path_text<'a>(variable: &Variable, value: &'a CStr) -> Result<&'a str, SceneE
 /// Longest path, bytes.
 const LONGEST_PATH: usize = 4096;
 
-fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
+pub(in crate::fmi2) fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
     Variable::by_value_reference(reference).ok_or(Failure::UnknownReference {
         kind,
         reference,
