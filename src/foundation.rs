@@ -47,7 +47,8 @@ impl Model {
         let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
         let preload = Preload::new(scene, &springs, (&power, parallel.as_ref()), initial)?;
         let tolerance = scene.solver.effective_tolerance();
-        let bending_force = bending_force(scene, &springs);
+        // Of the springs bent by the overtravel, at least by 0.1 mm: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
+        let bending_force = springs.stiffness() * scene.contact.overtravel.abs().max(1e-4);
         let force_scale = preload.force.max(bending_force);
         let other = |power: Power| Law::Power(power).parting(tolerance, force_scale);
         let laws = Laws {
@@ -77,7 +78,7 @@ impl Model {
             .or_else(|| frequency((scene, &springs, &preload), laws, initial.coil));
         let generator = Generator::new(scene);
         let closed_loop = match laws.contact {
-            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene) && is_rayleigh(scene, &modes) => {
+            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene, &modes) => {
                 ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new)
             }
             _ => None,
@@ -176,11 +177,6 @@ fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
     }
 }
 
-/// Force of the springs bent by the overtravel, at least by 0.1 mm, N: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
-fn bending_force(scene: &Scene, springs: &Springs) -> f64 {
-    springs.stiffness() * scene.contact.overtravel.abs().max(1e-4)
-}
-
 /// Force at the held tip per base acceleration that varies slowly, kg.
 fn inertia(modes: &[Mode]) -> f64 {
     let tip = |load: fn(&Mode) -> f64| -> f64 {
@@ -190,18 +186,14 @@ fn inertia(modes: &[Mode]) -> f64 {
     (tip(|mode| mode.participation) / tip(|mode| mode.tip)).abs()
 }
 
-/// Whether nothing but the contact law can keep the scene from being linear, and nothing within a step is requested.
-fn is_linear(scene: &Scene) -> bool {
+/// Whether nothing but the contact law can keep the scene from being linear, nothing within a step is requested, and all damping is
+/// Rayleigh's, as exact steps need it.
+fn is_linear(scene: &Scene, modes: &[Mode]) -> bool {
+    let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
+    let is_rayleigh = |mode: &Mode| mode.damping == alpha + beta * mode.omega_squared;
     scene.effects.axial_force != AxialForceKind::FromDeflection
         && scene.fixed_spring.is_none()
         && scene.pushed_at().is_none()
         && !scene.effects.extremes
-}
-
-/// Whether all damping is Rayleigh's, as exact steps need it.
-fn is_rayleigh(scene: &Scene, modes: &[Mode]) -> bool {
-    let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
-    modes
-        .iter()
-        .all(|mode| mode.damping == alpha + beta * mode.omega_squared)
+        && modes.iter().all(is_rayleigh)
 }

@@ -7,11 +7,9 @@
 use crate::beam::pieces::Pieces;
 use crate::math::legendre;
 
-pub struct Mesh {
+pub struct Mesh<'a> {
+    spring: &'a Pieces,
     stretches: Vec<Stretch>,
-    before_contact: usize,
-    before_pusher: Option<usize>,
-    clamp_flexibility: f64,
     rule: Rule,
 }
 
@@ -23,9 +21,6 @@ struct Stretch {
     flexibility: Vec<f64>,
     /// rho A at the nodes, kg/m.
     mass_per_length: Vec<f64>,
-    /// Mass (kg) and rotary inertia (kg m2) at its end.
-    mass: f64,
-    inertia: f64,
 }
 
 /// A bent spring.
@@ -41,9 +36,9 @@ pub struct Bend {
     pub ends: Vec<(f64, f64)>,
 }
 
-impl Mesh {
+impl<'a> Mesh<'a> {
     /// With enough nodes for `count` functions.
-    pub fn new(spring: &Pieces, count: usize) -> Self {
+    pub fn new(spring: &'a Pieces, count: usize) -> Self {
         let rule = Rule::new(spring.nodes(count));
         let stretches = spring.parts.iter().map(|piece| {
             let sections = rule.nodes.iter().map(|x| piece.section(f64::midpoint(*x, 1.0)));
@@ -52,15 +47,11 @@ impl Mesh {
                 half: 0.5 * piece.length,
                 flexibility,
                 mass_per_length,
-                mass: piece.mass,
-                inertia: piece.inertia,
             }
         });
         Self {
             stretches: stretches.collect(),
-            before_contact: spring.before_contact,
-            before_pusher: spring.before_pusher,
-            clamp_flexibility: spring.clamp_flexibility,
+            spring,
             rule,
         }
     }
@@ -74,7 +65,7 @@ impl Mesh {
             moment,
             ends: Vec::with_capacity(self.stretches.len()),
         };
-        let (mut deflection, mut slope) = (0.0, self.clamp_flexibility * clamp);
+        let (mut deflection, mut slope) = (0.0, self.spring.clamp_flexibility * clamp);
         for (stretch, moment) in self.stretches.iter().zip(bend.moment.chunks_exact(self.rule.len())) {
             let half = stretch.half;
             let curvature: Vec<f64> = moment.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
@@ -99,19 +90,16 @@ impl Mesh {
             shear += force;
             moment += couple;
             let (half, rule) = (stretch.half, &self.rule);
-            let whole = rule.integral(density);
-            let shears: Vec<f64> = rule
-                .integrals(density)
-                .map(|sum| shear + half * (whole - sum))
-                .collect();
-            let turned = rule.integral(&shears);
-            let moments: Vec<f64> = rule
-                .integrals(&shears)
-                .map(|sum| moment + half * (turned - sum))
-                .collect();
-            shear += half * whole;
-            moment += half * turned;
-            parts.push(moments);
+            let from_nodes = |values: &[f64], beyond: f64| -> Vec<f64> {
+                let whole = rule.integral(values);
+                rule.integrals(values)
+                    .map(|sum| beyond + half * (whole - sum))
+                    .collect()
+            };
+            let shears = from_nodes(density, shear);
+            parts.push(from_nodes(&shears, moment));
+            shear += half * rule.integral(density);
+            moment += half * rule.integral(&shears);
         }
         parts.reverse();
         self.bent(moment, parts.concat())
@@ -125,17 +113,17 @@ impl Mesh {
 
     /// Under unit force at the contact.
     pub fn pushed(&self) -> Bend {
-        self.loaded(self.before_contact.saturating_sub(1), 1.0, 0.0)
+        self.loaded(self.spring.before_contact.saturating_sub(1), 1.0, 0.0)
     }
 
     /// Under unit force at the pusher, where there is one.
     pub fn pushed_by_pusher(&self) -> Option<Bend> {
-        Some(self.loaded(self.before_pusher?.checked_sub(1)?, 1.0, 0.0))
+        Some(self.loaded(self.spring.before_pusher?.checked_sub(1)?, 1.0, 0.0))
     }
 
     /// Under unit moment at the contact.
     pub fn turned(&self) -> Bend {
-        self.loaded(self.before_contact.saturating_sub(1), 0.0, 1.0)
+        self.loaded(self.spring.before_contact.saturating_sub(1), 0.0, 1.0)
     }
 
     /// Under unit force and under unit moment at the end.
@@ -165,14 +153,14 @@ impl Mesh {
     fn accelerated(&self, nodes: &[f64], ends: &[(f64, f64)]) -> Bend {
         let masses = self.stretches.iter().flat_map(|stretch| &stretch.mass_per_length);
         let density: Vec<_> = masses.zip(nodes).map(|(m, a)| m * a).collect();
-        let ends = self.stretches.iter().zip(ends);
+        let ends = self.spring.parts.iter().zip(ends);
         self.under(&density, ends.map(|(at, (a, turn))| (at.mass * a, at.inertia * turn)))
     }
 
     /// Under what unit axial compression between clamp and contact does in this shape.
     pub fn compressed(&self, shape: &Bend) -> Bend {
         let (at_contact, _) = self.at_contact(shape);
-        let nodes = self.before_contact * self.rule.len();
+        let nodes = self.spring.before_contact * self.rule.len();
         let moment = shape.deflection.iter().enumerate();
         let moment = moment.map(|(n, deflection)| if n < nodes { at_contact - deflection } else { 0.0 });
         self.bent(at_contact, moment.collect())
@@ -180,12 +168,14 @@ impl Mesh {
 
     /// Deflection (m) and slope (1) at the contact.
     pub fn at_contact(&self, shape: &Bend) -> (f64, f64) {
-        Self::at_end(shape, self.before_contact)
+        Self::at_end(shape, self.spring.before_contact)
     }
 
     /// Deflection at the pusher, m; 0 without one.
     pub fn at_pusher(&self, shape: &Bend) -> f64 {
-        self.before_pusher.map_or(0.0, |before| Self::at_end(shape, before).0)
+        self.spring
+            .before_pusher
+            .map_or(0.0, |before| Self::at_end(shape, before).0)
     }
 
     /// The same at the end of so many stretches.
@@ -200,32 +190,29 @@ impl Mesh {
         let count = self.stretches.len() * self.rule.len();
         let (mut masses, mut lengths) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for (n, stretch) in self.stretches.iter().enumerate() {
-            let axial = if n < self.before_contact { stretch.half } else { 0.0 };
+            let axial = if n < self.spring.before_contact {
+                stretch.half
+            } else {
+                0.0
+            };
             lengths.extend(self.rule.weights.iter().map(|weight| weight * axial));
             let nodes = self.rule.weights.iter().zip(&stretch.mass_per_length);
             masses.extend(nodes.map(|(weight, mass)| weight * stretch.half * mass));
         }
-        let ends = self.stretches.iter().map(|stretch| (stretch.mass, stretch.inertia));
+        let ends = self.spring.parts.iter().map(|piece| (piece.mass, piece.inertia));
         (masses, lengths, ends.collect())
     }
 
     /// Work of the moments of one shape on the curvatures of another, J.
     fn work(&self, a: &Bend, b: &Bend) -> f64 {
         let n = self.rule.len();
-        let stretches = self
-            .stretches
-            .iter()
-            .zip(a.moment.chunks_exact(n).zip(b.moment.chunks_exact(n)));
-        let inside: f64 = stretches
-            .map(|(stretch, (a, b))| {
-                let nodes = self.rule.weights.iter().zip(&stretch.flexibility).zip(a.iter().zip(b));
-                stretch.half
-                    * nodes
-                        .map(|((weight, flexibility), (a, b))| weight * flexibility * a * b)
-                        .sum::<f64>()
-            })
-            .sum();
-        inside + self.clamp_flexibility * a.clamp * b.clamp
+        let moments = a.moment.chunks_exact(n).zip(b.moment.chunks_exact(n));
+        let inside = self.stretches.iter().zip(moments).map(|(stretch, (a, b))| {
+            let nodes = self.rule.weights.iter().zip(&stretch.flexibility).zip(a.iter().zip(b));
+            let works = nodes.map(|((weight, flexibility), (a, b))| weight * flexibility * a * b);
+            stretch.half * works.sum::<f64>()
+        });
+        inside.sum::<f64>() + self.spring.clamp_flexibility * a.clamp * b.clamp
     }
 
     /// The shape without its parts along others, which are orthonormal in strain energy, itself of unit energy; `None` if
@@ -250,7 +237,7 @@ impl Mesh {
         })
     }
 
-    pub fn sum<'a>(&self, parts: impl Iterator<Item = (f64, &'a Bend)>) -> Bend {
+    pub fn sum<'b>(&self, parts: impl Iterator<Item = (f64, &'b Bend)>) -> Bend {
         let mut moment = vec![0.0; self.stretches.len() * self.rule.len()];
         let mut clamp = 0.0;
         for (factor, shape) in parts {
@@ -282,18 +269,15 @@ impl Rule {
         let integrals = |at: &[f64]| -> Vec<f64> {
             let below = [-1.0].iter().chain(at);
             let pairs = below.zip(at.iter().skip(1)).enumerate();
-            pairs
-                .map(|(k, (below, above))| (above - below) / (2 * k + 1) as f64)
-                .collect()
+            let integrals = pairs.map(|(k, (below, above))| (above - below) / (2 * k + 1) as f64);
+            integrals.collect()
         };
         let partial = values.iter().flat_map(|at| {
             let integrals = integrals(at);
             let entry = |(weight, other): (&f64, &Vec<f64>)| {
                 let terms = integrals.iter().zip(other).enumerate();
-                weight
-                    * terms
-                        .map(|(k, (integral, p))| (k as f64 + 0.5) * integral * p)
-                        .sum::<f64>()
+                let terms = terms.map(|(k, (integral, p))| (k as f64 + 0.5) * integral * p);
+                weight * terms.sum::<f64>()
             };
             weights.iter().zip(&values).map(entry).collect::<Vec<_>>()
         });

@@ -150,32 +150,20 @@ impl Springs {
 
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is
     /// that of the moving one. `None` at or above the buckling load.
-    pub fn modes(&self, scene: &Scene, [moving, fixed, tongues]: Counts, axial_force: f64) -> Option<Basis> {
+    pub fn modes(&self, scene: &Scene, [moving, fixed, of_tongues]: Counts, axial_force: f64) -> Option<Basis> {
         let mut basis = self.moving.modes(scene, moving, axial_force)?;
         if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
-            let fixed = self.fixed.as_ref().and_then(|own| {
-                own.modes(fixed, 0.0, |mode| {
-                    (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
-                })
-            });
-            let tongues = self.tongues.as_ref().and_then(|own| {
-                own.modes(tongues, axial_force, |mode| {
-                    (mode.parallel, mode.participation) = (-mode.tip, 0.0);
-                })
-            });
+            let at_fixed = |mode: &mut Mode| (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
+            let fixed = self.fixed.as_ref().and_then(|own| own.modes(1, fixed, 0.0, at_fixed));
+            let apart = |mode: &mut Mode| (mode.parallel, mode.participation) = (-mode.tip, 0.0);
+            let tongues = self.tongues.as_ref();
+            let tongues = tongues.and_then(|own| own.modes(2, of_tongues, axial_force, apart));
             // Modes of others have no part in the shapes of the moving spring.
             let size = basis.shapes.first().map_or(0, DVector::len);
             let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
             let own = basis.modes.drain(..).zip(basis.last.drain(..));
-            let others = [fixed, tongues].into_iter().enumerate();
-            let others = others.filter_map(|(before, other)| Some((before + 1, other?)));
-            let others = others.flat_map(|(spring, other)| {
-                let placed = move |mut last: [Last; SPRINGS]| {
-                    last.swap(0, spring);
-                    last
-                };
-                other.modes.into_iter().zip(other.last.into_iter().map(placed))
-            });
+            let others = fixed.into_iter().chain(tongues);
+            let others = others.flat_map(|other| other.modes.into_iter().zip(other.last));
             let springs = own.chain(others).take(self.room());
             let armature = self.armature.as_ref().map(Armature::mode);
             let armature = armature.map(|mode| (mode, <[Last; SPRINGS]>::default()));
@@ -253,10 +241,12 @@ impl Beside {
         }
     }
 
-    /// Its modes under an axial compression (N), each changed to what it does at the contacts; `None` at or above the buckling load.
-    fn modes(&self, count: usize, axial_force: f64, at_contacts: impl Fn(&mut Mode)) -> Option<Basis> {
+    /// Its modes under an axial compression (N), each changed to what it does at the contacts, as those of the spring with this index;
+    /// `None` at or above the buckling load.
+    fn modes(&self, index: usize, count: usize, axial_force: f64, at_contacts: impl Fn(&mut Mode)) -> Option<Basis> {
         let mut basis = self.spring.modes(&self.scene, count, axial_force)?;
         basis.modes.iter_mut().for_each(at_contacts);
+        basis.last.iter_mut().for_each(|last| last.swap(0, index));
         Some(basis)
     }
 }

@@ -133,18 +133,11 @@ impl Instance {
         stop_time: Option<f64>,
     ) -> Result<(), Failure> {
         if !start_time.is_finite() {
-            return Err(Failure::Argument {
-                name: "startTime",
-                value: start_time,
-                allowed: "allowed is any finite number".to_owned(),
-            });
+            return refused("startTime", start_time, "allowed is any finite number");
         }
         if let Some(stop) = stop_time.filter(|stop| stop.is_nan() || *stop < start_time) {
-            return Err(Failure::Argument {
-                name: "stopTime",
-                value: stop,
-                allowed: format!("allowed is startTime = {} s or more", number(start_time)),
-            });
+            let start = number(start_time);
+            return refused("stopTime", stop, format!("allowed is startTime = {start} s or more"));
         }
         let usable = tolerance.filter(|tolerance| tolerance.is_finite() && *tolerance > 0.0);
         self.experiment = Experiment {
@@ -250,10 +243,9 @@ impl Instance {
     /// Advances to the end of one communication step.
     pub(super) fn step(&mut self, point: f64, size: f64) -> Result<(), Failure> {
         let (now, end) = (self.time, point + size);
-        let refused = |name, value, allowed| Err(Failure::Argument { name, value, allowed });
         if !(size.is_finite() && size > 0.0 && (!end.is_finite() || end > point)) {
             let allowed = "allowed is a positive finite number above the floating-point spacing of time";
-            return refused("communicationStepSize", size, allowed.to_owned());
+            return refused("communicationStepSize", size, allowed);
         }
         let (slack, off) = (rounding(point, size), (point - now).abs());
         let tolerated = slack.max(LARGEST_OFFSET * size);
@@ -308,6 +300,11 @@ impl Instance {
         }
         Ok(())
     }
+}
+
+fn refused(name: &'static str, value: f64, allowed: impl Into<String>) -> Result<(), Failure> {
+    let allowed = allowed.into();
+    Err(Failure::Argument { name, value, allowed })
 }
 
 /// The estimate of the error over the tolerance from which on the importer is told: for half of the relays it is that far
