@@ -43,11 +43,8 @@ pub fn all() -> String {
 /// `Collocation` of a step with so many Radau IIA nodes.
 fn collocation(count: usize, by_root: bool) -> String {
     let nodes: Vec<_> = radau(count).iter().map(|x| f64::midpoint(1.0, *x)).collect();
-    let at_start: Vec<_> = derivatives(&nodes, 0.0)
-        .iter()
-        .take(count)
-        .map(|shape| shape[0])
-        .collect();
+    let at_start = derivatives(&nodes, 0.0);
+    let at_start: Vec<_> = at_start.iter().take(count).map(|shape| shape[0]).collect();
     let leading = nodes.iter().map(|own| {
         let others = nodes.iter().filter(|node| *node != own);
         others.map(|node| 1.0 / (own - node)).product::<f64>()
@@ -57,16 +54,12 @@ fn collocation(count: usize, by_root: bool) -> String {
         let values = [0.0].into_iter().cycle().take(first);
         values.chain(fewer.iter().map(|shape| shape[0])).collect::<Vec<_>>()
     };
-    let places: Vec<_> = [-1.0]
-        .into_iter()
-        .chain(nodes.iter().map(|node| 2.0 * (node - 1.0) + 1.0))
-        .collect();
+    let places = nodes.iter().map(|node| 2.0 * (node - 1.0) + 1.0);
+    let places: Vec<_> = [-1.0].into_iter().chain(places).collect();
     let integrals = integrals(&nodes, by_root);
     let shapes = shapes(&nodes, by_root, &integrals);
-    let impulse = integrals[0]
-        .error
-        .iter()
-        .fold(0.0_f64, |most, impulse| most.max(impulse.abs()));
+    let impulses = integrals[0].error.iter().map(|impulse| impulse.abs());
+    let impulse = impulses.fold(0.0, f64::max);
     let quadrature = 0.5 * count as f64 * factorial(count - 1).powi(2) / factorial(2 * count - 1);
     format!(
         "Collocation {{ nodes: {:?}, variable: {}, places: {nodes:?}, shapes: {shapes}, at_start: {at_start:?}, \
@@ -103,26 +96,21 @@ fn shapes(nodes: &[f64], by_root: bool, integrals: &[Table]) -> String {
     let times = times(nodes, by_root);
     let mut power = vec![1.0; nodes.len()];
     let powers = (0..=TERMS).map(|n| {
-        let next = power
-            .iter()
-            .zip(&times)
-            .map(|(power, x)| power * (x / (n + 1) as f64))
-            .collect();
+        let next = power.iter().zip(&times).map(|(power, x)| power * (x / (n + 1) as f64));
+        let next = next.collect();
         std::mem::replace(&mut power, next)
     });
     let negligible = (1..TERMS).map(|n| (NEGLIGIBLE * factorial(n)).powf(1.0 / n as f64));
     let at_nodes: Vec<_> = nodes.iter().map(|x| derivatives(nodes, *x)).collect();
-    let derivatives_at_nodes: Vec<_> = (0..=nodes.len())
-        .map(|m| Table::of(nodes.len(), |i, shape| at_nodes[i][shape][m]))
-        .collect();
+    let table = |m| Table::of(nodes.len(), |i, shape| at_nodes[i][shape][m]);
+    let derivatives_at_nodes: Vec<_> = (0..=nodes.len()).map(table).collect();
     let start = derivatives(nodes, 0.0);
-    let rows: Vec<_> = (0..=nodes.len())
-        .map(|m| {
-            let mut nodal: Vec<_> = start.iter().map(|shape| shape[m]).collect();
-            let error = nodal.pop().unwrap_or_default();
-            Row { nodal, error }
-        })
-        .collect();
+    let rows = (0..=nodes.len()).map(|m| {
+        let mut nodal: Vec<_> = start.iter().map(|shape| shape[m]).collect();
+        let error = nodal.pop().unwrap_or_default();
+        Row { nodal, error }
+    });
+    let rows: Vec<_> = rows.collect();
     let ends = |tables: &[Table]| tables.iter().map(Table::end).collect::<Vec<_>>();
     format!(
         "Shapes {{ variable: {}, powers: {:?}, negligible: {:?}, integrals: {integrals:?}, end_integrals: {:?}, \
@@ -196,11 +184,8 @@ fn integrals(nodes: &[f64], by_root: bool) -> Vec<Table> {
         Table::of(nodes.len(), |i, shape| {
             let [sums, sizes] = &by_node[i][n];
             // What is mere rounding is zero.
-            if sums[shape].abs() <= 16.0 * f64::EPSILON * sizes[shape] {
-                0.0
-            } else {
-                sums[shape]
-            }
+            let is_rounding = sums[shape].abs() <= 16.0 * f64::EPSILON * sizes[shape];
+            if is_rounding { 0.0 } else { sums[shape] }
         })
     };
     (0..TERMS).map(table).collect()
@@ -218,9 +203,8 @@ fn shape_values(nodes: &[f64], s: f64) -> Vec<f64> {
 /// The derivatives of all shapes (m = 0, 1, ...) at a place, from their Taylor coefficients about it.
 fn derivatives(nodes: &[f64], at: f64) -> Vec<[f64; MOST]> {
     let from_there: Vec<_> = nodes.iter().map(|node| node - at).collect();
-    let vanishing = nodes
-        .iter()
-        .fold(one(), |shape, node| multiplied(shape, -1.0 / node, (node - at) / node));
+    let without = |shape, node: &f64| multiplied(shape, -1.0 / node, (node - at) / node);
+    let vanishing = nodes.iter().fold(one(), without);
     let mut shapes = lagrange(&from_there);
     shapes.push(vanishing);
     for shape in &mut shapes {
@@ -235,9 +219,8 @@ fn derivatives(nodes: &[f64], at: f64) -> Vec<[f64; MOST]> {
 fn lagrange(points: &[f64]) -> Vec<[f64; MOST]> {
     let polynomial = |own: &f64| {
         let others = points.iter().filter(|point| *point != own);
-        others.fold(one(), |shape, point| {
-            multiplied(shape, 1.0 / (own - point), -point / (own - point))
-        })
+        let times = |shape, point: &f64| multiplied(shape, 1.0 / (own - point), -point / (own - point));
+        others.fold(one(), times)
     };
     points.iter().map(polynomial).collect()
 }

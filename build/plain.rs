@@ -36,11 +36,9 @@ pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {
         text.replace_range(value.range(), &real);
         if !numbers.is_empty() {
             let described = parent.attribute_node("description").ok_or("no description")?;
-            let numbers: Vec<_> = numbers
-                .iter()
-                .map(|(number, name)| format!("{number} {name}"))
-                .collect();
-            text.insert_str(described.range_value().end, &format!(": {}", numbers.join(", ")));
+            let numbers = numbers.iter().map(|(number, name)| format!("{number} {name}"));
+            let numbers = numbers.collect::<Vec<_>>().join(", ");
+            text.insert_str(described.range_value().end, &format!(": {numbers}"));
         }
     }
     Ok(text.replacen("modelName=\"RelayContact\"", "modelName=\"RelayContact-plain\"", 1))
@@ -54,7 +52,6 @@ fn numbers<'a>(document: &'a Document, value: &Node) -> Vec<(&'a str, &'a str)> 
     let items = declared(document, *value)
         .into_iter()
         .flat_map(|definition| definition.descendants());
-    items
-        .filter_map(|item| Some((item.attribute("value")?, item.attribute("name")?)))
-        .collect()
+    let numbers = items.filter_map(|item| Some((item.attribute("value")?, item.attribute("name")?)));
+    numbers.collect()
 }

@@ -289,9 +289,7 @@ impl Model {
     /// (relative), at approaches given as deviations from the preload (m); relative to the preload, J.
     pub(crate) fn energy_at(&self, modes: &ModeStates, coil: f64, approach: impl Fn(usize) -> f64) -> f64 {
         let pairs = self.modes.iter().zip(modes);
-        let beam: f64 = pairs
-            .map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q)
-            .sum();
+        let beam = pairs.map(|(mode, at)| at.v * at.v + mode.omega_squared * at.q * at.q);
         let links = self.links.iter().enumerate().map(|(index, link)| match &link.law {
             LinkLaw::Contact(law) => law.energy_above_tangent(link.approach, approach(index)),
             LinkLaw::Magnet(magnet) => {
@@ -300,7 +298,7 @@ impl Model {
             }
             LinkLaw::Friction(_) | LinkLaw::Gauge => 0.0,
         });
-        0.5 * beam + links.sum::<f64>()
+        0.5 * beam.sum::<f64>() + links.sum::<f64>()
     }
 
     /// Displacement of a port per coordinate of a mode, b_i, 1/sqrt(kg).

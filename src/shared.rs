@@ -103,10 +103,8 @@ impl<K, V> Default for Found<K, V> {
 impl<K: PartialEq, V: Clone> Found<K, V> {
     /// The value for a key, if need be found now: by a function that knows nothing but the key, so that no other value can be kept.
     pub fn of(&self, key: K, find: fn(&K) -> V) -> V {
-        let known = open(&self.0)
-            .iter()
-            .find(|(of, _)| *of == key)
-            .map(|(_, value)| value.clone());
+        let known = |(of, value): &(K, V)| (*of == key).then(|| value.clone());
+        let known = open(&self.0).iter().find_map(known);
         known.unwrap_or_else(|| {
             // Others may go on meanwhile.
             let value = find(&key);

@@ -94,14 +94,7 @@ pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: 
         let usual = *usual;
         let along = |slip: Phase| {
             let loads = loads(modes, friction, slip)?;
-            let [.., most] = FORCES;
-            let closed = Loop {
-                modes,
-                loads: &loads,
-                contact_damping: law.damping,
-                stiffest: law.tangent_stiffness(law.indentation(most * usual)),
-            };
-            if closed.is_stable() {
+            if Loop::of(modes, &loads, law, usual).is_stable() {
                 return None;
             }
             let growing = FORCES.map(|share| {
@@ -153,7 +146,18 @@ fn add(sum: &mut Range, range: Range) {
     }
 }
 
-impl Loop<'_> {
+impl<'a> Loop<'a> {
+    /// Up to the greatest of the forces looked at about the usual one (N).
+    fn of(modes: &'a [Mode], loads: &'a DVector<f64>, law: &Power, usual: f64) -> Self {
+        let [.., most] = FORCES;
+        Self {
+            modes,
+            loads,
+            contact_damping: law.damping,
+            stiffest: law.tangent_stiffness(law.indentation(most * usual)),
+        }
+    }
+
     /// Whether it is stable at all stiffnesses up to the greatest. `false` also where that does not show, as with a mode without
     /// damping, at whose frequency the response is infinite.
     fn is_stable(&self) -> bool {
@@ -265,48 +269,31 @@ mod tests {
             let count = 1 + case % 12;
             let damped = 10_f64.powf(-6.0 + 5.0 * random());
             let (mut omega, by_mass) = (10_f64.powf(3.0 + random()), 10.0 * random());
-            let modes: Vec<Mode> = (0..count)
-                .map(|_| {
-                    omega *= 1.01 + 2.0 * random() * random();
-                    Mode {
-                        omega_squared: omega * omega,
-                        damping: if random() < 0.02 {
-                            0.0
-                        } else {
-                            by_mass + damped * omega * omega * 1e-3
-                        },
-                        tip: 20.0 * (random() - 0.5),
-                        ..Mode::default()
-                    }
-                })
-                .collect();
-            let against = random();
-            let loads = modes
-                .iter()
-                .map(|mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5));
-            let loads = DVector::from_vec(loads.collect::<Vec<f64>>());
-            let damping = if case % 3 == 0 {
-                0.0
-            } else {
-                10_f64.powf(-8.0 + 4.0 * random())
+            let mode = |_| {
+                omega *= 1.01 + 2.0 * random() * random();
+                let is_damped = f64::from(u8::from(random() >= 0.02));
+                Mode {
+                    omega_squared: omega * omega,
+                    damping: is_damped * (by_mass + damped * omega * omega * 1e-3),
+                    tip: 20.0 * (random() - 0.5),
+                    ..Mode::default()
+                }
             };
+            let modes: Vec<Mode> = (0..count).map(mode).collect();
+            let against = random();
+            let load = |mode: &Mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5);
+            let loads = DVector::from_iterator(count, modes.iter().map(load));
+            let damped = f64::from(u8::from(case % 3 > 0));
             let law = Power {
+                damping: damped * 10_f64.powf(-8.0 + 4.0 * random()),
                 coefficient: 10_f64.powf(8.0 + 3.0 * random()),
                 exponent: HERTZ,
-                damping,
                 traces: 0.0,
                 least: 0.0,
             };
-            let grows = FORCES
-                .iter()
-                .any(|force| fastest(&modes, &loads, &law, force * 0.2).is_some());
-            let closed = Loop {
-                modes: &modes,
-                loads: &loads,
-                contact_damping: damping,
-                stiffest: law.tangent_stiffness(law.indentation(16.0 * 0.2)),
-            };
-            let is_stable = closed.is_stable();
+            let grows = |force: &f64| fastest(&modes, &loads, &law, force * 0.2).is_some();
+            let grows = FORCES.iter().any(grows);
+            let is_stable = Loop::of(&modes, &loads, &law, 0.2).is_stable();
             assert!(!(is_stable && grows), "{case}: {modes:?} {loads} {law:?}");
             stable += u32::from(is_stable);
             calm += u32::from(!grows);

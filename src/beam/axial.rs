@@ -49,10 +49,9 @@ impl Feedback {
         let modal = |value: &dyn Fn(usize) -> f64| -> Modal {
             std::array::from_fn(|i| if i < modes.len() { value(i) } else { 0.0 })
         };
-        let geometric: Vec<Modal> = shapes
-            .iter()
-            .map(|a| modal(&|i| shapes.get(i).map_or(0.0, |b| space.slope_product(section.length, a, b))))
-            .collect();
+        let product = |a, b| space.slope_product(section.length, a, b);
+        let row = |a| modal(&|i| shapes.get(i).map_or(0.0, |b| product(a, b)));
+        let geometric: Vec<Modal> = shapes.iter().map(row).collect();
         let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
         let mut slopes = [0.0; MAX_MODES];
         add_rows(&mut slopes, &geometric, modes.iter().map(at_rest));
@@ -99,9 +98,8 @@ impl Feedback {
         let slopes: f64 = pairs.map(|(g, mode)| g * g / mode.omega_squared).sum();
         let tips: f64 = modes.iter().map(Mode::compliance).sum();
         let geometric = self.geometric.iter().enumerate().zip(modes);
-        let trace: f64 = geometric
-            .map(|((i, row), mode)| row.get(i).copied().unwrap_or_default() / mode.omega_squared)
-            .sum();
+        let own = |i, row: &Modal| row.get(i).copied().unwrap_or_default();
+        let trace: f64 = geometric.map(|((i, row), mode)| own(i, row) / mode.omega_squared).sum();
         self.slope(y).abs() * (slopes * tips).sqrt() + change.abs() * trace
     }
 

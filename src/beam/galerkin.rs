@@ -130,27 +130,23 @@ impl Space {
         let eigen = ((&reduced + reduced.transpose()) * 0.5).symmetric_eigen();
         let shapes = factor.l_dirty().tr_solve_lower_triangular(&eigen.eigenvectors)?;
         let largest = eigen.eigenvalues.max();
-        let mut modes: Vec<_> = eigen
-            .eigenvalues
-            .iter()
-            .zip(shapes.column_iter())
-            .map(|(&mu, shape)| {
-                // Rounding leaves only the order of magnitude of the highest of many modes.
-                let mu = mu.max(f64::EPSILON * largest);
-                let normalisation = 1.0 / (mu * half_mass).sqrt();
-                let tip = shape.dot(&at.tip) * normalisation;
-                let mode = Mode {
-                    omega_squared: half_stiffness / (half_mass * mu),
-                    tip,
-                    participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
-                    rotation: 2.0 / length * shape.dot(&at.slope) * normalisation,
-                    pusher: shape.dot(&at.pusher) * normalisation,
-                    parallel: shape.dot(&at.parallel) * normalisation,
-                    ..Mode::default()
-                };
-                (mode, shape * normalisation)
-            })
-            .collect();
+        let modes = eigen.eigenvalues.iter().zip(shapes.column_iter()).map(|(&mu, shape)| {
+            // Rounding leaves only the order of magnitude of the highest of many modes.
+            let mu = mu.max(f64::EPSILON * largest);
+            let normalisation = 1.0 / (mu * half_mass).sqrt();
+            let tip = shape.dot(&at.tip) * normalisation;
+            let mode = Mode {
+                omega_squared: half_stiffness / (half_mass * mu),
+                tip,
+                participation: half_mass * shape.dot(&self.load) * normalisation + tip_mass * tip,
+                rotation: 2.0 / length * shape.dot(&at.slope) * normalisation,
+                pusher: shape.dot(&at.pusher) * normalisation,
+                parallel: shape.dot(&at.parallel) * normalisation,
+                ..Mode::default()
+            };
+            (mode, shape * normalisation)
+        });
+        let mut modes: Vec<_> = modes.collect();
         modes.sort_unstable_by(|(a, _), (b, _)| a.omega_squared.total_cmp(&b.omega_squared));
         Some(modes)
     }

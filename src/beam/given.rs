@@ -69,25 +69,22 @@ impl Given {
 
     /// Up to `count` modes, the residual flexibility of each contact among them.
     pub fn modes(&self, count: usize, (alpha, beta): Rayleigh) -> Vec<Mode> {
-        let mut modes: Vec<_> = self
-            .modes
-            .iter()
-            .take(count.min(MAX_MODES).saturating_sub(self.residuals()))
-            .map(|mode| {
-                let omega_squared = mode.omega_squared();
-                let own = mode.damping.map(|ratio| 2.0 * ratio * omega_squared.sqrt());
-                Mode {
-                    omega_squared,
-                    damping: own.unwrap_or(alpha + beta * omega_squared),
-                    tip: mode.contact,
-                    participation: mode.participation,
-                    rotation: mode.rotation.unwrap_or_default(),
-                    pusher: mode.pusher.unwrap_or_default(),
-                    parallel: mode.parallel.unwrap_or_default(),
-                    ..Mode::default()
-                }
-            })
-            .collect();
+        let mode = |mode: &GivenMode| {
+            let omega_squared = mode.omega_squared();
+            let own = mode.damping.map(|ratio| 2.0 * ratio * omega_squared.sqrt());
+            Mode {
+                omega_squared,
+                damping: own.unwrap_or(alpha + beta * omega_squared),
+                tip: mode.contact,
+                participation: mode.participation,
+                rotation: mode.rotation.unwrap_or_default(),
+                pusher: mode.pusher.unwrap_or_default(),
+                parallel: mode.parallel.unwrap_or_default(),
+                ..Mode::default()
+            }
+        };
+        let count = count.min(MAX_MODES).saturating_sub(self.residuals());
+        let mut modes: Vec<_> = self.modes.iter().take(count).map(mode).collect();
         let Some(highest) = modes.last().map(|mode| mode.omega_squared) else {
             return modes;
         };
@@ -115,9 +112,8 @@ impl Given {
     /// Coefficients of these modes in the highest that are not left out, sqrt(J) per displacement; zero if none is left out.
     pub fn last<'a>(&'a self, modes: &'a [Mode]) -> impl Iterator<Item = Last> + 'a {
         let pairs = modes.iter().zip(&self.modes);
-        let kept = pairs
-            .take_while(|(mode, given)| mode.omega_squared == given.omega_squared())
-            .count();
+        let is_same = |(mode, given): &(&Mode, &GivenMode)| mode.omega_squared == given.omega_squared();
+        let kept = pairs.take_while(is_same).count();
         let in_function = move |i: usize, k: usize| kept < self.modes.len() && i + LANES == kept + k;
         modes.iter().enumerate().map(move |(i, mode)| {
             let root = mode.omega_squared.sqrt();

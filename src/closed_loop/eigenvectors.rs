@@ -1,5 +1,7 @@
 //! Eigenvectors of the beam with a linear contact, pair by pair of eigenvalues.
 
+use std::ops::Add;
+
 use crate::closed_loop::eigenvalues;
 use crate::closed_loop::oscillator::Oscillator;
 use crate::closed_loop::problem::{Number, Pair, Problem, Root};
@@ -51,6 +53,12 @@ impl Problem {
         let determinant = a * d - b * c;
         let x = |[f0, f1]: [f64; 2]| (d * f0 - b * f1) / determinant;
         let x_rate = |[f0, f1]: [f64; 2]| (a * f1 - c * f0) / determinant;
+        let component = |[q, left]: [Number; 2]| Component {
+            q: linear(q),
+            v: linear(q * root.value),
+            x: [x(linear(left)), x(linear(q))],
+            x_rate: [x_rate(linear(left)), x_rate(linear(q))],
+        };
         EigenPair {
             oscillator: Oscillator {
                 omega_squared: mean * mean - square,
@@ -58,15 +66,7 @@ impl Problem {
                 force: [1.0, 0.0],
                 ..Oscillator::default()
             },
-            components: vectors
-                .into_iter()
-                .map(|[q, left]| Component {
-                    q: linear(q),
-                    v: linear(q * root.value),
-                    x: [x(linear(left)), x(linear(q))],
-                    x_rate: [x_rate(linear(left)), x_rate(linear(q))],
-                })
-                .collect(),
+            components: vectors.into_iter().map(component).collect(),
         }
     }
 
@@ -93,6 +93,15 @@ impl Problem {
         let s1 = 1.0 / product(&slow, &slow).sqrt();
         let s2 = (1.0 / product(&fast, &fast).sqrt()).copysign(product(&slow, &fast));
         let (n1, n2) = (n1 * s1, n2 * s2);
+        let component = |([q1, left1], [q2, left2]): ([f64; 2], [f64; 2])| {
+            let ([x1, x2], [y1, y2]) = ([left1 / n1, left2 / n2], [q1 / n1, q2 / n2]);
+            Component {
+                q: linear(s1 * q1, s2 * q2),
+                v: linear(s1 * l1 * q1, s2 * l2 * q2),
+                x: [x1 + x2, y1 + y2],
+                x_rate: [l1 * x1 + l2 * x2, l1 * y1 + l2 * y2],
+            }
+        };
         EigenPair {
             oscillator: Oscillator {
                 omega_squared: l1 * l2,
@@ -101,19 +110,7 @@ impl Problem {
                 force: linear(s1, s2),
                 ..Oscillator::default()
             },
-            components: slow
-                .into_iter()
-                .zip(fast)
-                .map(|([q1, left1], [q2, left2])| {
-                    let ([x1, x2], [y1, y2]) = ([left1 / n1, left2 / n2], [q1 / n1, q2 / n2]);
-                    Component {
-                        q: linear(s1 * q1, s2 * q2),
-                        v: linear(s1 * l1 * q1, s2 * l2 * q2),
-                        x: [x1 + x2, y1 + y2],
-                        x_rate: [l1 * x1 + l2 * x2, l1 * y1 + l2 * y2],
-                    }
-                })
-                .collect(),
+            components: slow.into_iter().zip(fast).map(component).collect(),
         }
     }
 
@@ -134,29 +131,20 @@ impl Problem {
         }
         if weakest.0 < 0.1 {
             // If p_i suffers cancellation, it follows from the secular equation instead.
-            let others = self
-                .modes
-                .iter()
-                .zip(&inverses)
-                .enumerate()
-                .filter(|(n, _)| *n != weakest.1);
-            let sum = others.fold(
-                one / (contact * self.contact_stiffness),
-                |sum, (_, ((_, tip), inverse))| sum + *inverse * (tip * tip),
-            );
+            let all = self.modes.iter().zip(&inverses).enumerate();
+            let others = all.filter(|(n, _)| *n != weakest.1);
+            let parts = others.map(|(_, ((_, tip), inverse))| *inverse * (tip * tip));
+            let sum = parts.fold(one / (contact * self.contact_stiffness), Add::add);
             if let (Some(inverse), Some((_, tip))) = (inverses.get_mut(weakest.1), self.modes.get(weakest.1)) {
                 *inverse = sum * (-1.0 / (tip * tip));
             }
         }
         // (l + c_i) q_i + k beta_c T_i (sum T q), with the secular equation for the sum.
         let excess = self.stiffness_damping - self.contact_damping;
-        self.modes
-            .iter()
-            .zip(inverses)
-            .map(|(&(omega, tip), inverse)| {
-                let q = inverse * tip;
-                [q, q * (value + (self.mass_damping + excess * omega)) / contact]
-            })
-            .collect()
+        let vectors = self.modes.iter().zip(inverses).map(|(&(omega, tip), inverse)| {
+            let q = inverse * tip;
+            [q, q * (value + (self.mass_damping + excess * omega)) / contact]
+        });
+        vectors.collect()
     }
 }

@@ -111,14 +111,11 @@ impl ClosedLoop {
                 [kick + x * of_mode(mode), push + x_rate * of_mode(mode)]
             })
         };
-        let oscillators: Vec<Oscillator> = pairs
-            .iter()
-            .map(|pair| Oscillator {
-                load: load(pair, |mode| -mode.participation),
-                push: load(pair, |mode| mode.tip),
-                ..pair.oscillator
-            })
-            .collect();
+        let oscillators = pairs.iter().map(|pair| Oscillator {
+            load: load(pair, |mode| -mode.participation),
+            push: load(pair, |mode| mode.tip),
+            ..pair.oscillator
+        });
         let component = |pair: usize, mode: usize| pairs.get(pair % count)?.components.get(mode / 2);
         let pick = |values: [f64; 2], n: usize| values.get(n).copied().unwrap_or(f64::NAN);
         let right = |mode: usize, x: usize| {
@@ -135,7 +132,7 @@ impl ClosedLoop {
             contact,
             to_modes: Columns::new(2 * count, right),
             to_oscillators: Columns::new(2 * count, left),
-            oscillators,
+            oscillators: oscillators.collect(),
             tip: zeroed_box(),
             resolution: Resolution::default(),
             particular: zeroed_box(),
@@ -200,9 +197,8 @@ impl ClosedLoop {
     fn force_of(&self, motion: &Coordinates) -> f64 {
         let (x, v) = motion.split_at(self.oscillators.len());
         let motions = self.oscillators.iter().zip(x.iter().zip(v));
-        motions
-            .map(|(oscillator, (x, v))| oscillator.force[0] * x + oscillator.force[1] * v)
-            .sum()
+        let forces = motions.map(|(oscillator, (x, v))| oscillator.force[0] * x + oscillator.force[1] * v);
+        forces.sum()
     }
 
     /// Whether the transformations are inverse to each other, and the oscillators have the right contact force, to the
@@ -214,13 +210,10 @@ impl ClosedLoop {
             if let Some(entry) = motion.get_mut(n) {
                 *entry = 1.0 / scale;
             }
-            let again = self
-                .to_modes
-                .times(Simd::Portable, &self.to_oscillators.times(Simd::Portable, &motion));
-            let motions = again.iter().zip(&motion).zip(&scales);
-            motions
-                .map(|((again, motion), scale)| (again - motion) * scale)
-                .all(|error| error.abs() < ROUNDING)
+            let oscillators = self.to_oscillators.times(Simd::Portable, &motion);
+            let again = self.to_modes.times(Simd::Portable, &oscillators);
+            let mut motions = again.iter().zip(&motion).zip(&scales);
+            motions.all(|((again, motion), scale)| ((again - motion) * scale).abs() < ROUNDING)
         });
         let Linear { stiffness, damping, .. } = self.contact;
         // Error of the contact force of a modal motion, and the magnitude of its terms.
@@ -283,13 +276,8 @@ impl ClosedLoop {
     pub(crate) fn tip_of(&self, motion: &Coordinates) -> (f64, f64) {
         let [displacement, velocity] = &*self.tip;
         let rows = displacement.iter().zip(velocity).take(2 * self.oscillators.len());
-        let motions = motion.iter().zip(rows);
-        motions.fold(
-            (0.0, 0.0),
-            |(displacement, velocity), (motion, (to_displacement, to_velocity))| {
-                (displacement + to_displacement * motion, velocity + to_velocity * motion)
-            },
-        )
+        let parts = motion.iter().zip(rows).map(|(motion, (x, v))| (x * motion, v * motion));
+        parts.fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     }
 
     /// Adds the particular solution under the loads, times `sign`.

@@ -19,13 +19,14 @@ impl Identity {
     /// None if the GUID is neither of this library's nor that of one of these with a spring file in the folder.
     pub(super) fn of(guid: &str, resources: Option<&Path>) -> Option<Self> {
         let known = |spring: Option<(String, String)>| {
-            let own = [(GUID, false), (PLAIN_GUID, true)]
-                .into_iter()
-                .find(|(own, _)| match &spring {
-                    None => guid == *own,
-                    Some((name, text)) => guid == guid_carrying(own, name, text),
-                });
-            let plain = own?.1;
+            let is_own = |own: &str| match &spring {
+                None => guid == own,
+                Some((name, text)) => guid == guid_carrying(own, name, text),
+            };
+            let plain = is_own(PLAIN_GUID);
+            if !plain && !is_own(GUID) {
+                return None;
+            }
             let spring = spring.map(|(name, _)| name);
             Some(Self { plain, spring })
         };
