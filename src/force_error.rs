@@ -171,12 +171,10 @@ impl ForceError {
             by_deviation,
             unresolved,
         } = self;
-        deviation.q.iter().chain(&deviation.v).all(|number| number.is_finite())
-            && forces.iter().all(|force| force.is_finite())
-            && growth.is_finite()
-            && [greatest, largest, largest_growth, by_slip]
-                .into_iter()
-                .chain([largest_by_slip, size, by_deviation, unresolved])
-                .all(|number| (0.0..f64::INFINITY).contains(number))
+        let Deviation { q, v } = deviation;
+        let errors = [greatest, largest, largest_growth, by_slip].into_iter();
+        let mut errors = errors.chain([largest_by_slip, size, by_deviation, unresolved]);
+        let mut others = q.iter().chain(v).chain(forces).chain([growth]);
+        others.all(|number| number.is_finite()) && errors.all(|error| (0.0..f64::INFINITY).contains(error))
     }
 }

@@ -37,19 +37,15 @@ pub struct Simulation {
 /// Keeps what simulations find of springs, slip and steps for the next ones, also while there is none.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    _springs: Shared<spring::Known>,
-    _slip: Shared<slip_stability::Known>,
-    _short: Shared<Left<SHORT>>,
-    _long: Shared<Left<LONG>>,
+    _models: (Shared<spring::Known>, Shared<slip_stability::Known>),
+    _steps: (Shared<Left<SHORT>>, Shared<Left<LONG>>),
 }
 
 impl Default for Kept {
     fn default() -> Self {
         Self {
-            _springs: Shared::of(&spring::KNOWN),
-            _slip: Shared::of(&slip_stability::KNOWN),
-            _short: Shared::of(&OF_SHORT),
-            _long: Shared::of(&OF_LONG),
+            _models: (Shared::of(&spring::KNOWN), Shared::of(&slip_stability::KNOWN)),
+            _steps: (Shared::of(&OF_SHORT), Shared::of(&OF_LONG)),
         }
     }
 }
@@ -132,14 +128,8 @@ impl Simulation {
     /// # Errors
     /// A [`StepError`]; the state is then that before the call.
     pub fn step(&mut self, inputs: &Inputs, time: f64, step_size: f64) -> Result<(), StepError> {
-        communication_step::step(
-            &self.model,
-            &mut self.motion,
-            &mut self.workspace,
-            inputs,
-            time,
-            step_size,
-        )
+        let Self { model, motion, .. } = self;
+        communication_step::step(model, motion, &mut self.workspace, inputs, time, step_size)
     }
 
     /// With the state of another simulation of the same scene, which started with these inputs.
@@ -211,10 +201,10 @@ impl Simulation {
             RealOutput::StepMaximumResistance => conduction::greatest_resistance(model, motion),
             RealOutput::StepMinimumForce => self.range(Some(CONTACT)).least,
             RealOutput::StepMaximumForce => self.range(Some(CONTACT)).greatest,
-            RealOutput::StepMinimumGap => match self.extremes().filter(|_| roles.second.is_some()) {
-                Some(extremes) => -extremes.nearest,
-                None => 0.0,
-            },
+            RealOutput::StepMinimumGap => {
+                let seen = self.extremes().filter(|_| roles.second.is_some());
+                seen.map_or(0.0, |extremes| -extremes.nearest)
+            }
             RealOutput::ParallelForce => force(roles.parallel),
             RealOutput::ParallelLastOpening => self.event(roles.parallel, |link| link.last_opening),
             RealOutput::ParallelLastClosing => self.event(roles.parallel, |link| link.last_closing),

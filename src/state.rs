@@ -75,11 +75,6 @@ pub struct LinkState {
 }
 
 impl LinkState {
-    /// Whether the contact has opened or closed.
-    pub(crate) fn has_switched(&self) -> bool {
-        self.last_opening.is_some() || self.last_closing.is_some()
-    }
-
     fn is_sound(&self, time: f64) -> bool {
         let Self {
             approach,
@@ -90,14 +85,9 @@ impl LinkState {
             last_opening,
             last_closing,
         } = self;
-        [approach, rate, force]
-            .into_iter()
-            .chain(course)
-            .all(|number| number.is_finite())
-            && [last_opening, last_closing]
-                .into_iter()
-                .flatten()
-                .all(|event| is_past(*event, time))
+        let mut numbers = [approach, rate, force].into_iter().chain(course);
+        let mut events = [last_opening, last_closing].into_iter().flatten();
+        numbers.all(|number| number.is_finite()) && events.all(|event| is_past(*event, time))
     }
 }
 
@@ -132,42 +122,26 @@ impl State {
         own.for_each(|(own, other)| *own = *other);
         let own = self.links.iter_mut().zip(&other.links).take(links);
         own.for_each(|(own, other)| *own = *other);
-        let Self {
+        Self {
             modes: _,
             links: _,
-            time,
-            with_contact,
-            displacements,
-            velocities,
-            coil,
-            circuits,
-            slip,
-            last_kink,
-            kink_is_closing,
-            lengths,
-            energy_surplus,
-            energy_balance,
-            force_error,
-            steps,
-            rejected_steps,
-            iterations,
-        } = other;
-        self.time = *time;
-        self.with_contact = *with_contact;
-        self.displacements = *displacements;
-        self.velocities = *velocities;
-        self.coil = *coil;
-        self.circuits = *circuits;
-        self.slip = *slip;
-        self.last_kink = *last_kink;
-        self.kink_is_closing = *kink_is_closing;
-        self.lengths = *lengths;
-        self.energy_surplus = *energy_surplus;
-        self.energy_balance = *energy_balance;
-        self.force_error = *force_error;
-        self.steps = *steps;
-        self.rejected_steps = *rejected_steps;
-        self.iterations = *iterations;
+            time: self.time,
+            with_contact: self.with_contact,
+            displacements: self.displacements,
+            velocities: self.velocities,
+            coil: self.coil,
+            circuits: self.circuits,
+            slip: self.slip,
+            last_kink: self.last_kink,
+            kink_is_closing: self.kink_is_closing,
+            lengths: self.lengths,
+            energy_surplus: self.energy_surplus,
+            energy_balance: self.energy_balance,
+            force_error: self.force_error,
+            steps: self.steps,
+            rejected_steps: self.rejected_steps,
+            iterations: self.iterations,
+        } = *other;
     }
 
     pub(crate) fn touches_now(&self) -> bool {
@@ -201,11 +175,9 @@ impl State {
             rejected_steps: _,
             iterations: _,
         } = self;
-        [time, coil, energy_surplus, energy_balance]
-            .into_iter()
-            .chain(displacements)
-            .chain(velocities)
-            .all(|number| number.is_finite())
+        let numbers = [time, coil, energy_surplus, energy_balance].into_iter();
+        let mut numbers = numbers.chain(displacements).chain(velocities);
+        numbers.all(|number| number.is_finite())
             && modes.iter().all(|mode| mode.q.is_finite() && mode.v.is_finite())
             && links.iter().all(|link| link.is_sound(*time))
             && circuits.is_sound(*time)
@@ -217,7 +189,8 @@ impl State {
 
     /// Whether a contact has opened or closed.
     pub(crate) fn has_switched(&self) -> bool {
-        self.links.iter().any(LinkState::has_switched)
+        let switched = |link: &LinkState| link.last_opening.is_some() || link.last_closing.is_some();
+        self.links.iter().any(switched)
     }
 
     /// The last closing of a contact, s.

@@ -110,8 +110,7 @@ impl Springs {
             let blows = [own].into_iter().chain(others);
             blows.fold(0, |most, blow| count(blow).max(most))
         };
-        let fixed = self.fixed.as_ref();
-        let tongues = self.tongues.as_ref();
+        let (fixed, tongues) = (self.fixed.as_ref(), self.tongues.as_ref());
         let needed = [
             most(&|blow| self.moving.count(blow, tolerance)),
             fixed.map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),

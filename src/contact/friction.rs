@@ -107,9 +107,8 @@ impl Slip {
             dissipated,
             last_change,
         } = self;
-        [way, distance, dissipated].into_iter().all(|number| number.is_finite())
-            && *distance >= 0.0
-            && last_change.is_none_or(|change| change.is_finite() && change <= time)
+        let finite = [way, distance, dissipated].into_iter().all(|number| number.is_finite());
+        finite && *distance >= 0.0 && last_change.is_none_or(|change| change.is_finite() && change <= time)
     }
 }
 

@@ -7,27 +7,22 @@ use crate::error::{Remark, SceneError, StepError, number};
 /// Why a call failed.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(super) enum Failure {
-    /// A call that the state does not allow.
     #[error("not allowed in the state {}; allowed in: {}", state.name(), listed(function.allowed))]
     CallOrder { function: Function, state: State },
-    /// An invalid pointer.
     #[error("argument {0} is null, misaligned or too long")]
     Pointer(&'static str),
-    /// A value reference without a variable of this type.
     #[error("value reference {reference}{}: no {kind} variable", owner.map(|name| format!(" ({name})")).unwrap_or_default())]
     UnknownReference {
         kind: &'static str,
         reference: u32,
         owner: Option<&'static str>,
     },
-    /// An output, or a parameter that can no longer be set.
     #[error("{name}: cannot be set in the state {}; {reason}", state.name())]
     NotSettable {
         name: &'static str,
         state: State,
         reason: &'static str,
     },
-    /// An output read before it has a value.
     #[error("{name}: has no value in the state {}; outputs can be read from Initialization Mode on", state.name())]
     NotComputed { name: &'static str, state: State },
     /// A value that its variable does not allow.
@@ -42,17 +37,14 @@ pub(super) enum Failure {
     /// A communication step that could not be integrated.
     #[error(transparent)]
     Step(StepError),
-    /// A derivative that takes an input out of its range.
     #[error("{0}; reached by its derivative in this step")]
     Course(SceneError),
-    /// A time, step size or other argument that is not allowed.
     #[error("{name} = {}: not allowed, {allowed}", number(*value))]
     Argument {
         name: &'static str,
         value: f64,
         allowed: String,
     },
-    /// An unusable tolerance of the experiment.
     #[error("tolerance = {}: ignored, as it is not a positive finite number", number(*.0))]
     Tolerance(f64),
     /// A communication point that differs from the time of the instance by more than rounding. The step is done.
@@ -77,37 +69,27 @@ pub(super) enum Failure {
         error: f64,
         modes: usize,
     },
-    /// A log category that is not declared.
     #[error(
         "category {0}: no such log category, allowed are logStatusError, logStatusWarning, logEvents and logSolver; \
          nothing changed"
     )]
     Category(String),
-    /// A derivative of an unsupported order.
     #[error("{name}: no derivative of order {order}, allowed is 1")]
     Order { name: &'static str, order: i32 },
-    /// A derivative of an input that has no effect.
     #[error("{name}: its derivative of order {order} has no effect, nor has any above order 1. Not reported again")]
     Ignored { name: &'static str, order: i32 },
-    /// A variable whose derivative cannot be set or read.
     #[error("{name}: not allowed, only {role} have derivatives")]
     NoDerivative { name: &'static str, role: &'static str },
-    /// A status that this component does not have.
     #[error("status kind {0}: this component has no such status of this type")]
     StatusKind(u32),
-    /// A pointer that is not a saved state of this component, or has been freed.
     #[error("argument {0} is not a saved state of this component, or has been freed")]
     ForeignState(&'static str),
-    /// Bytes that are not a saved state of this component.
     #[error("argument serializedState is not a saved state: {0}")]
     Serialized(String),
-    /// A buffer of the wrong size for the serialized state.
     #[error("size = {size}: not allowed, the saved state has {needed} bytes")]
     Size { size: usize, needed: usize },
-    /// Less memory than the call takes.
     #[error("out of memory: {0} bytes are needed, and the system does not give them")]
     Memory(usize),
-    /// A capability that the description declares unsupported.
     #[error("not supported, see {0} in modelDescription.xml")]
     Unsupported(&'static str),
     /// A panic caught at the C interface.

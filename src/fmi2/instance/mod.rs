@@ -229,14 +229,11 @@ impl Instance {
 
     /// The simulation of the values set.
     fn prepare(&mut self) -> Result<&Simulation, SceneError> {
-        let simulation = match self.simulation.take() {
-            Some(simulation) => simulation,
-            None => Box::new(Simulation::new(
-                &self.experiment.scene(&self.scene),
-                &self.inputs,
-                self.experiment.start_time,
-            )?),
+        let made = || {
+            let scene = self.experiment.scene(&self.scene);
+            Simulation::new(&scene, &self.inputs, self.experiment.start_time).map(Box::new)
         };
+        let simulation = self.simulation.take().map_or_else(made, Ok)?;
         Ok(self.simulation.insert(simulation))
     }
 
