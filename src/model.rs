@@ -134,10 +134,9 @@ impl Model {
         let unstable = self.unstable_slip.iter();
         let unstable = unstable.filter_map(|unstable| unstable.remark(&self.scene));
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
-        let remarks = self.bent_far().into_iter().chain(self.friction_at_touch());
-        let remarks = remarks.chain(self.no_interruption());
-        let remarks = remarks.chain(unstable).chain(not_used).chain(self.of_files());
-        remarks.chain(self.few_modes()).collect()
+        let of_scene = [self.bent_far(), self.friction_at_touch(), self.no_interruption()];
+        let remarks = of_scene.into_iter().flatten().chain(unstable).chain(not_used);
+        remarks.chain(self.of_files()).chain(self.few_modes()).collect()
     }
 
     /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has

@@ -6,15 +6,7 @@ use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Where something is found that somebody uses.
-#[derive(Debug)]
-pub struct Home<T>(Mutex<Option<Arc<T>>>);
-
-impl<T> Home<T> {
-    /// With nothing in it yet.
-    pub const fn new() -> Self {
-        Self(Mutex::new(None))
-    }
-}
+pub type Home<T> = Mutex<Option<Arc<T>>>;
 
 /// A share in it: it stays as long as there is one.
 #[derive(Debug)]
@@ -29,7 +21,7 @@ impl<T> Shared<T> {
     where
         T: Default,
     {
-        let value = open(&home.0).get_or_insert_with(Arc::default).clone();
+        let value = open(home).get_or_insert_with(Arc::default).clone();
         Self { value, home }
     }
 
@@ -58,7 +50,7 @@ impl<T> Deref for Shared<T> {
 
 impl<T> Drop for Shared<T> {
     fn drop(&mut self) {
-        let mut home = open(&self.home.0);
+        let mut home = open(self.home);
         if self.count() <= 1 {
             *home = None;
         }
@@ -129,7 +121,7 @@ mod tests {
 
     #[test]
     fn the_last_share_frees_it() {
-        static HOME: Home<Shelf<u32>> = Home::new();
+        static HOME: Home<Shelf<u32>> = Home::new(None);
         let (first, second) = (Shared::of(&HOME), Shared::of(&HOME));
         first.leave(7, &first);
         drop(first);
@@ -142,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_shelf_has_no_more_than_there_are_shares() {
-        static HOME: Home<Shelf<u32>> = Home::new();
+        static HOME: Home<Shelf<u32>> = Home::new(None);
         let shares = [Shared::of(&HOME), Shared::of(&HOME)];
         for number in 1..=5 {
             shares[0].leave(number, &shares[0]);

@@ -85,7 +85,7 @@ impl Unstable {
 /// What was found, by modes, friction, law and usual force (N).
 pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Unstable>>;
 
-pub(crate) static KNOWN: Home<Known> = Home::new();
+pub(crate) static KNOWN: Home<Known> = Home::new(None);
 
 /// Unstable slip, in each direction in which it is, about the usual contact force (N).
 pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {

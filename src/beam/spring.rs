@@ -230,7 +230,7 @@ type Asked = (usize, f64, bool);
 /// Modes with their shapes in a space.
 type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
-pub static KNOWN: Home<Known> = Home::new();
+pub static KNOWN: Home<Known> = Home::new(None);
 
 /// The uniform section as a spring of one segment.
 fn uniform(beam: &Beam) -> Segments {

@@ -1,6 +1,6 @@
 //! Static compliance of the cantilever at its tip, under axial compression.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use nalgebra::DVectorView;
 
@@ -67,14 +67,13 @@ impl Statics {
     /// For the section.
     pub fn new(section: &Section) -> Self {
         // The same numbers for every section: found once in a process, and nothing that would have to be freed.
-        static TERMS_OF_ALL: OnceLock<[Term; TERMS]> = OnceLock::new();
-        let terms = TERMS_OF_ALL.get_or_init(|| {
+        static OF_ALL: LazyLock<[Term; TERMS]> = LazyLock::new(|| {
             let mut terms = Term::of(Space::new(TERMS)).into_iter();
             std::array::from_fn(|_| terms.next().unwrap_or_default())
         });
         Self {
             section: *section,
-            terms: terms.to_vec(),
+            terms: OF_ALL.to_vec(),
         }
     }
 

@@ -250,41 +250,39 @@ mod tests {
             }
             scene
         };
-        let early = (3e-4, 2e-3);
-        let mut rising = excited(ExcitationKind::Sine, (1000.0, 0.0), early);
+        let (sine, sweep, random) = (ExcitationKind::Sine, ExcitationKind::LogSweep, ExcitationKind::Random);
+        let times = (3e-4, 2e-3);
+        let mut rising = excited(sine, (1000.0, 0.0), times);
         rising.excitation.rise_time = 1.2e-3;
-        for scene in [
+        let early = [
             rising,
-            excited(ExcitationKind::Sine, (1000.0, 0.0), early),
-            excited(ExcitationKind::HalfSine, (1000.0, 0.0), early),
-            excited(ExcitationKind::LogSweep, (300.0, 3000.0), early),
-            excited(ExcitationKind::LogSweep, (3000.0, 300.0), early),
-            excited(ExcitationKind::Random, (100.0, 2500.0), early),
-        ] {
-            for (time, length) in [
-                (0.0, 3e-4),
-                (3e-4, 1e-4),
-                (7.1e-4, 3e-5),
-                (1.3e-3, 1e-9),
-                (2.2e-3, 1e-4),
-            ] {
-                check(&SHORT_BY_TIME.nodes, &scene, time, length);
-                check(&LONG_BY_TIME.nodes, &scene, time, length);
-            }
-        }
-        let late = [
-            excited(ExcitationKind::LogSweep, (1000.0, 1e6), (0.0, 1e9)),
-            excited(ExcitationKind::LogSweep, (1e6, 1000.0), (0.0, 1e9)),
-            excited(ExcitationKind::LogSweep, (10.0, 2000.0), (0.0, 900.0)),
-            excited(ExcitationKind::LogSweep, (1000.0, 1001.0), (0.0, 1e9)),
-            excited(ExcitationKind::LogSweep, (1000.0, 1000.0), (0.0, 1e9)),
-            excited(ExcitationKind::Sine, (1000.0, 0.0), (0.0, 1.0)),
-            excited(ExcitationKind::Random, (10.0, 2000.0), (0.0, 1.0)),
+            excited(sine, (1000.0, 0.0), times),
+            excited(ExcitationKind::HalfSine, (1000.0, 0.0), times),
+            excited(sweep, (300.0, 3000.0), times),
+            excited(sweep, (3000.0, 300.0), times),
+            excited(random, (100.0, 2500.0), times),
         ];
-        for scene in &late {
-            for time in [0.1, 17.3, 449.9, 451.2, 899.9] {
-                check(&SHORT_BY_TIME.nodes, scene, time, 3e-5);
-                check(&LONG_BY_TIME.nodes, scene, time, 3e-5);
+        let late = [
+            excited(sweep, (1000.0, 1e6), (0.0, 1e9)),
+            excited(sweep, (1e6, 1000.0), (0.0, 1e9)),
+            excited(sweep, (10.0, 2000.0), (0.0, 900.0)),
+            excited(sweep, (1000.0, 1001.0), (0.0, 1e9)),
+            excited(sweep, (1000.0, 1000.0), (0.0, 1e9)),
+            excited(sine, (1000.0, 0.0), (0.0, 1.0)),
+            excited(random, (10.0, 2000.0), (0.0, 1.0)),
+        ];
+        let early_steps = [
+            (0.0, 3e-4),
+            (3e-4, 1e-4),
+            (7.1e-4, 3e-5),
+            (1.3e-3, 1e-9),
+            (2.2e-3, 1e-4),
+        ];
+        let late_steps = [0.1, 17.3, 449.9, 451.2, 899.9].map(|time| (time, 3e-5));
+        for (scenes, steps) in [(&early[..], early_steps), (&late[..], late_steps)] {
+            for (scene, (time, length)) in scenes.iter().flat_map(|scene| steps.map(|step| (scene, step))) {
+                check(&SHORT_BY_TIME.nodes, scene, time, length);
+                check(&LONG_BY_TIME.nodes, scene, time, length);
             }
         }
         check(&LONG_BY_TIME.nodes, &late[0], 7e8, 1e-7);

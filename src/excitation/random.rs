@@ -47,7 +47,6 @@ pub struct Random {
     factors: Vec<Each>,
     /// End of the band, Hz.
     pub highest: f64,
-    /// Interval of time in which it acts.
     pub window: Window,
 }
 
@@ -64,7 +63,6 @@ pub struct Piece {
 }
 
 impl Default for Piece {
-    /// Not computed yet.
     fn default() -> Self {
         Self {
             number: -1.0,
@@ -190,7 +188,6 @@ impl Random {
     }
 }
 
-/// Scalar product.
 #[inline(always)]
 fn dot<A: Arithmetic>(a: &Each, b: &Each) -> f64 {
     let mut sums = [0.0; LANES];

@@ -14,7 +14,6 @@ pub struct Sine {
     pub frequency: f64,
     /// Phase at the start, rad.
     pub phase: f64,
-    /// Interval of time in which it acts.
     pub window: Window,
     /// T, s; 0: it begins at once.
     pub rise_time: f64,

@@ -27,7 +27,6 @@ pub struct LogSweep {
     displacement_limit: f64,
     /// The instant within the sweep at which the displacement limit begins or ceases to set the amplitude, s.
     crossover: Option<f64>,
-    /// Interval of time in which it acts.
     pub window: Window,
 }
 

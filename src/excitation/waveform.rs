@@ -8,9 +8,7 @@ use crate::scene::Excitation;
 /// Base accelerations over a step, m/s2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accelerations<const S: usize> {
-    /// At the start.
     pub start: f64,
-    /// At the nodes.
     pub nodes: Nodal<S>,
 }
 

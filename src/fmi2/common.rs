@@ -51,7 +51,8 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
         call(c, states::SET_DEBUG_LOGGING, |instance| {
             let categories = array(categories, nCategories, "categories")?.iter();
             let categories = categories.map(|category| text(*category, "categories"));
-            instance.choose_logging(loggingOn != fmi2False, &categories.collect::<Result<Vec<_>, _>>()?)
+            let categories = categories.collect::<Result<Vec<_>, _>>()?;
+            instance.logger.choose(loggingOn != fmi2False, &categories)
         })
     }
 }

@@ -4,7 +4,6 @@ use super::states::{Function, State};
 use super::types::{fmi2Discard, fmi2Error, fmi2Status, fmi2Warning};
 use crate::error::{Remark, SceneError, StepError, number};
 
-/// Why a call failed.
 #[derive(Clone, Debug, thiserror::Error)]
 pub(super) enum Failure {
     #[error("not allowed in the state {}; allowed in: {}", state.name(), listed(function.allowed))]
@@ -34,7 +33,6 @@ pub(super) enum Failure {
     /// Inconsistent parameters.
     #[error(transparent)]
     Initialisation(SceneError),
-    /// A communication step that could not be integrated.
     #[error(transparent)]
     Step(StepError),
     #[error("{0}; reached by its derivative in this step")]

@@ -2,6 +2,7 @@
 
 use std::ffi::{CStr, CString};
 
+use super::failure::Failure;
 use super::types::{fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment, fmi2Error, fmi2Status};
 
 /// Kinds of messages.
@@ -45,7 +46,6 @@ pub(super) struct Logger {
     instance_name: CString,
     /// In the order of [`Category::ALL`].
     shown: [bool; 4],
-    /// The same after instantiation.
     initially: [bool; 4],
 }
 
@@ -61,16 +61,15 @@ impl Logger {
         }
     }
 
-    /// Shows again what it showed after instantiation.
     pub(super) fn reset(&mut self) {
         self.shown = self.initially;
     }
 
-    /// Selects what is shown; the first category that is not declared changes nothing, and is returned.
-    pub(super) fn choose<'a>(&mut self, on: bool, categories: &[&'a CStr]) -> Result<(), &'a CStr> {
+    /// Selects what is shown; a category that is not declared changes nothing.
+    pub(super) fn choose(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Failure> {
         let known = Category::ALL.map(Category::name);
         if let Some(unknown) = categories.iter().find(|category| !known.contains(category)) {
-            return Err(unknown);
+            return Err(Failure::Category(unknown.to_string_lossy().into_owned()));
         }
         for (shown, category) in self.shown.iter_mut().zip(Category::ALL) {
             let named = categories.contains(&category.name());
@@ -89,10 +88,8 @@ impl Logger {
         (events || solver) && self.callback.is_some()
     }
 
-    /// Whether messages of a category are shown.
     fn shows(&self, category: Category) -> bool {
-        let mut all = Category::ALL.iter().zip(self.shown);
-        all.any(|(known, shown)| *known == category && shown)
+        self.shown.get(category as usize).is_some_and(|shown| *shown)
     }
 
     /// Passes the message of a failed call to the importer.
@@ -105,7 +102,6 @@ impl Logger {
         self.log(category, status, message);
     }
 
-    /// Passes a message to the importer.
     pub(super) fn log(&self, category: Category, status: fmi2Status, message: &str) {
         let Some(callback) = self.callback.filter(|_| self.shows(category)) else {
             return;

@@ -21,7 +21,6 @@ const VERSION: u32 = 6;
 /// Largest number of bytes: no state of a spring with as many entries as it may have takes a quarter of it.
 const LARGEST: usize = 1 << 20;
 
-/// The bytes of a saved state.
 pub(super) fn to_bytes(snapshot: &Snapshot) -> Result<Vec<u8>, Failure> {
     let contents = postcard::to_allocvec(snapshot).map_err(|error| Failure::Panic(error.to_string()))?;
     let mut bytes = [MAGIC, &VERSION.to_le_bytes(), GUID.as_bytes()].concat();

@@ -49,7 +49,6 @@ pub struct Function {
 }
 
 const ANY: &[State] = State::ALL;
-const READABLE: &[State] = ANY;
 const SETTABLE: &[State] = &[Instantiated, InitializationMode, StepComplete];
 const STATUS: &[State] = &[StepComplete, Terminated, Error];
 
@@ -70,10 +69,10 @@ functions! {
     EXIT_INITIALIZATION_MODE = "fmi2ExitInitializationMode", &[InitializationMode];
     TERMINATE = "fmi2Terminate", &[StepComplete];
     RESET = "fmi2Reset", ANY;
-    GET_REAL = "fmi2GetReal", READABLE;
-    GET_INTEGER = "fmi2GetInteger", READABLE;
-    GET_BOOLEAN = "fmi2GetBoolean", READABLE;
-    GET_STRING = "fmi2GetString", READABLE;
+    GET_REAL = "fmi2GetReal", ANY;
+    GET_INTEGER = "fmi2GetInteger", ANY;
+    GET_BOOLEAN = "fmi2GetBoolean", ANY;
+    GET_STRING = "fmi2GetString", ANY;
     SET_REAL = "fmi2SetReal", SETTABLE;
     SET_INTEGER = "fmi2SetInteger", SETTABLE;
     SET_BOOLEAN = "fmi2SetBoolean", SETTABLE;

@@ -146,13 +146,14 @@ impl<'a> Entry<'a> {
         Some(Value { text, node })
     }
 
-    /// What a key holds, read so; errors with its line.
+    /// What a key holds, read so; errors with its line and entry.
     pub(crate) fn get<T>(
         &self,
         key: &str,
         read: impl FnOnce(Value<'a>) -> Result<T, SceneError>,
     ) -> Result<Option<T>, SceneError> {
-        self.value(key).map(|value| value.at(read(value))).transpose()
+        let value = self.value(key);
+        value.map(|value| self.at(&value.node.span(), read(value))).transpose()
     }
 
     /// Adds line and entry to an error.
@@ -204,12 +205,10 @@ impl<'a> Entry<'a> {
     }
 
     pub(crate) fn optional(&self, field: Field) -> Result<Option<f64>, SceneError> {
-        let Some(value) = self.value(field.name) else {
-            return Ok(None);
-        };
-        let number = value.number(field.name);
-        let number = number.and_then(|number| field.check(number).map(|()| number));
-        self.at(&value.node.span(), number).map(Some)
+        self.get(field.name, |value| {
+            let number = value.number(field.name)?;
+            field.check(number).map(|()| number)
+        })
     }
 
     pub(crate) fn required(&self, field: Field) -> Result<f64, SceneError> {

@@ -3,7 +3,7 @@
 pub(super) mod snapshot;
 pub(super) mod variables;
 
-use std::ffi::{CStr, CString};
+use std::ffi::CString;
 use std::path::{Path, PathBuf};
 
 use snapshot::{Experiment, LARGEST_TOLERANCE, SavedMotion, Snapshot};
@@ -33,8 +33,7 @@ pub(super) struct Instance {
     _kept: Kept,
     /// The last successful time, s.
     pub(super) time: f64,
-    logger: Logger,
-    /// The folder of the component's resources.
+    pub(super) logger: Logger,
     resources: Option<PathBuf>,
     /// Whether all numbers are Reals.
     plain: bool,
@@ -120,12 +119,6 @@ impl Instance {
         if status == fmi2Warning { fmi2OK } else { status }
     }
 
-    pub(super) fn choose_logging(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Failure> {
-        self.logger
-            .choose(on, categories)
-            .map_err(|unknown| Failure::Category(unknown.to_string_lossy().into_owned()))
-    }
-
     pub(super) fn setup_experiment(
         &mut self,
         tolerance: Option<f64>,
@@ -183,7 +176,6 @@ impl Instance {
         self.told = Told::default();
     }
 
-    /// A snapshot of the instance.
     pub(super) fn snapshot(&self) -> Snapshot {
         let simulation = self.simulation.as_ref();
         Snapshot {

@@ -9,7 +9,6 @@ use crate::fmi2::states::State;
 use crate::simulation::Simulation;
 use crate::variables::{Group, Variable};
 
-/// A value to be set.
 #[derive(Clone, Copy)]
 pub(in crate::fmi2) enum Value<'a> {
     Real(f64),

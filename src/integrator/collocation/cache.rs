@@ -18,10 +18,10 @@ use crate::shared::{Home, Shared, Shelf};
 pub type Left<const S: usize> = Shelf<Store<S>>;
 
 /// Those of short steps.
-pub static OF_SHORT: Home<Left<SHORT>> = Home::new();
+pub static OF_SHORT: Home<Left<SHORT>> = Home::new(None);
 
 /// Those of long steps.
-pub static OF_LONG: Home<Left<LONG>> = Home::new();
+pub static OF_LONG: Home<Left<LONG>> = Home::new(None);
 
 /// Cache of coefficients by step length. Its content never affects results, only the time they take.
 #[derive(Clone, Debug)]
