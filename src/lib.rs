@@ -1,24 +1,8 @@
 //! Relay contact on a cantilever spring under vibration: contact force and contact resistance, opening and closing.
 //!
-//! How the parts follow from each other, each a module:
-//!
-//! ```text
-//! modelDescription.xml -> variables   what there is to set and to read
-//! scene       parameters and effects of one simulation
-//! beam        section, segments or given modes -> modes of the cantilever, frequencies, static compliance
-//! contact     indentation -> contact force (Hertz, rough, linear, with dissipation), friction;   armature, magnet
-//! preload     static equilibrium of beam and contact
-//! foundation, assembly  modes, ports and links of a scene -> model (never changes);   state  all that moves
-//! slip_stability  whether the contact slips without vibrating by itself
-//! link        ports and links: where forces act on the modes, and by which laws;   settle  the links that a motion makes
-//! integrator  Model, State, inputs -> State after a communication step: "The method" at its head
-//! closed_loop the same where spring and contact are linear: exact steps
-//! chatter, circuits  interruptions of the current;   force_error  the error of the contact force so far
-//! electrical  contact force -> resistance;   conduction  what the circuits conduct;   harmonic  the same contact in the frequency domain
-//! simulation  Model and State together, read by output;   reference  the model's parts, for reference solutions
-//! many        many scenes at once, on all cores
-//! fmi2        all of it behind the C interface of FMI 2.0
-//! ```
+//! From `modelDescription.xml` follow the [`variables`]; from a [`scene`] its springs, contacts and preload, and from these the model,
+//! which never changes. The integrator takes model, state and inputs over a communication step, a [`simulation`] is read by output,
+//! and [`fmi2`] is all of it behind the C interface of FMI 2.0. CONTRIBUTING.md has a map of the modules.
 //!
 //! ```
 //! use relay_contact::inputs::Inputs;

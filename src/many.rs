@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_panic_is_an_error_of_its_item_alone() {
         let odd = |item: &u32| {
-            assert!(item % 2 == 0, "odd: {item}");
+            assert!(item.is_multiple_of(2), "odd: {item}");
             Ok(*item)
         };
         for workers in [1, 2, 7] {

@@ -17,7 +17,7 @@ const STEP: f64 = 0.01;
 /// The first `count` angular frequencies (rad/s), ascending, of the section under the axial compression (N) with an
 /// elastic support of `stiffness` (N/m) at the tip.
 pub fn frequencies(section: &Section, axial_force: f64, stiffness: f64, count: usize) -> Vec<f64> {
-    let scale = (section.bending_stiffness / section.mass_per_length).sqrt() / section.length.powi(2);
+    let scale = section.rate();
     let determinant = |z: f64| determinant(section, axial_force, stiffness, z * z * scale);
     let mut found = Vec::with_capacity(count);
     let mut below = (1e-3, determinant(1e-3));

@@ -114,9 +114,8 @@ fn identity(
         return Err("instanceName is null or empty".to_owned());
     }
     if kind != fmi2CoSimulation {
-        return Err(format!(
-            "fmuType = {kind}: not allowed, allowed is 1 (fmi2CoSimulation)"
-        ));
+        let allowed = "allowed is 1 (fmi2CoSimulation)";
+        return Err(format!("fmuType = {kind}: not allowed, {allowed}"));
     }
     let guid = guid.map_err(|failure| failure.to_string())?.to_string_lossy();
     Identity::of(&guid, resources).ok_or_else(|| {

@@ -39,10 +39,8 @@ pub unsafe extern "C" fn relayContactFollow(
             let taken = size(nTimes.saturating_sub(1), nOutputs, "values")?;
             let times = array(times, nTimes, "times")?;
             let (inputs, courses) = (array(inputs, nInputs, "inputs")?, array(courses, given, "courses")?);
-            let (outputs, values) = (
-                array(outputs, nOutputs, "outputs")?,
-                array_mut(values, taken, "values")?,
-            );
+            let outputs = array(outputs, nOutputs, "outputs")?;
+            let values = array_mut(values, taken, "values")?;
             follow(instance, times, (inputs, courses), (outputs, values))
         })
     }
@@ -58,11 +56,8 @@ fn follow(
     let orders = vec![1; inputs.len()];
     let mut rates = vec![0.0; inputs.len()];
     let mut values = values.iter_mut();
-    let row = |number: usize| {
-        courses
-            .get(number * inputs.len()..(number + 1) * inputs.len())
-            .unwrap_or_default()
-    };
+    let width = inputs.len();
+    let row = |number: usize| courses.get(number * width..(number + 1) * width).unwrap_or_default();
     for (number, (&now, &next)) in times.iter().zip(times.iter().skip(1)).enumerate() {
         let length = next - now;
         // A jump. What is not a number fails as a step.

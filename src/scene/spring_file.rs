@@ -1,35 +1,5 @@
-//! Spring files in TOML, SI units: segments from the clamp on and what they carry,
-//!
-//! ```toml
-//! contact_position = 0.018    # of the contact from the clamp; the end without it
-//! fork_position = 0.012       # where it forks into two tongues, for effects.parallelContact; not at all without it
-//! clamp_stiffness = 2.0       # N m/rad; rigid without it
-//!
-//! [[segment]]
-//! length = 0.020
-//! width_start = 4e-3          # or width, where it is constant
-//! width_end = 2.5e-3
-//! thickness = 2e-4            # or thickness_start and thickness_end
-//! youngs_modulus = 1.28e11    # beam.youngsModulus without it
-//! density = 8250.0            # beam.density without it
-//!
-//! [[mass]]                    # tip.mass sits at the contact, without an entry
-//! position = 0.012
-//! mass = 5e-6
-//! rotary_inertia = 0.0        # none without it
-//! ```
-//!
-//! or modes of the free spring, normalised to a modal mass of 1 kg, with its static compliance:
-//!
-//! ```toml
-//! compliance = 2.1e-3         # m/N
-//!
-//! [[mode]]
-//! frequency = 512.0           # Hz
-//! contact = 160.0             # displacement of the contact point, 1/sqrt(kg)
-//! participation = 9.1e-3      # load per base acceleration, sqrt(kg)
-//! damping = 0.01              # share of critical; beam.massDamping and .stiffnessDamping without it
-//! ```
+//! Spring files in TOML, SI units: [segments](crate::scene::spring::Segments) from the clamp on and what they carry, or
+//! [modes](crate::scene::spring::Modes) of the free spring. Their keys are in docs/spring-files.md.
 
 use std::fs::File;
 use std::io::Read;
