@@ -95,17 +95,16 @@ def entries(model: Any, place: Place) -> list[str]:  # noqa: ANN401
 
 
 def line(path: Path, place: Place) -> int:
-    """Return the line in which an entry begins, or what it is missing in: by the first lines that already have it."""
+    """Return the line in which an entry begins, or what it is missing in: the first with which the file has it."""
     lines = path.read_text(encoding="utf-8-sig").split("\n")
-    ends = [0]
-    for count in range(1, len(lines) + 1):
-        # An entry may have several lines.
-        with suppress(tomllib.TOMLDecodeError):
-            tomllib.loads("\n".join(lines[ends[-1] : count]))
-            ends.append(count)
 
     def holds(count: int) -> bool:
-        table: Any = tomllib.loads("\n".join(lines[:count]))
+        table: Any = {}
+        # An entry may have several lines.
+        for end in range(count, len(lines) + 1):
+            with suppress(tomllib.TOMLDecodeError):
+                table = tomllib.loads("\n".join(lines[:end]))
+                break
         with suppress(KeyError, IndexError, TypeError):
             for key in place:
                 table = table[key]
@@ -114,7 +113,7 @@ def line(path: Path, place: Place) -> int:
 
     while not holds(len(lines)):
         place = place[:-1]
-    return ends[max(bisect_left(ends, True, key=holds), 1) - 1] + 1
+    return max(bisect_left(range(len(lines) + 1), True, key=holds), 1)
 
 
 @contextmanager

@@ -130,13 +130,7 @@ class Frictional(Reference):
         # Hertz: the stiffness is as the cube root of the force.
         stiffness = self.tangent * (force / self.force) ** (1 / 3)
         pushed = np.outer(modes.tip + sign * self.coefficient * self.height * modes.rotation, stiffness * modes.tip)
-        matrix = np.block(
-            [
-                [np.zeros_like(pushed), np.eye(len(modes.tip))],
-                [-np.diag(modes.omega_squared) - pushed, -np.diag(modes.damping) - self.contact_damping * pushed],
-            ]
-        )
-        return complex(max(np.linalg.eigvals(matrix), key=lambda value: value.real))
+        return complex(max(self.eigenvalues(pushed), key=lambda value: value.real))
 
 
 class FrictionalMotion(System):

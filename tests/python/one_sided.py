@@ -126,9 +126,9 @@ class System:
         assert np.abs(found.fun).max() < 1e-14
         return self.bent(found.x)
 
-    def split(self, state: Array) -> list[Array]:
+    def split(self, state: Array) -> tuple[Array, Array, Array]:
         """Return displacements, velocities, and what is beside them."""
-        return np.split(state, [self.count, 2 * self.count])
+        return state[: self.count], state[self.count : 2 * self.count], state[2 * self.count :]
 
     def forces(self, time: float, state: Array, phases: Sequence[int]) -> list[float]:
         """Return the force of each law, N."""

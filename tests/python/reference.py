@@ -197,6 +197,13 @@ class Reference:
             shapes.T @ slopes @ shapes,
         )
 
+    def eigenvalues(self, contact: Array) -> Any:  # noqa: ANN401
+        """Eigenvalues (1/s) of small motions of the modes, between which a contact has a matrix of stiffness."""
+        modes, none = self.modes(), np.zeros_like(contact)
+        stiffness = np.diag(modes.omega_squared) + contact
+        damping = np.diag(modes.damping) + self.contact_damping * contact
+        return np.linalg.eigvals(np.block([[none, np.eye(len(none))], [-stiffness, -damping]]))
+
     def linear_force(self, acceleration: Acceleration, step: float, steps: int) -> Array:
         """Contact force of the linear contact, which can pull, at the multiples of a step from rest, N.
 

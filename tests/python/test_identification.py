@@ -199,15 +199,9 @@ def test_a_response_of_the_open_spring_does_not_tell_masses_and_stiffness(tmp_pa
 def pole(values: Values) -> Array:
     """Return rate of decay and angular frequency of the slowest vibration, by the second solution."""
     spring = Reference(values)
-    modes, count = spring.modes(), len(spring.modes().tip)
-    contact = spring.tangent * np.outer(modes.tip, modes.tip)
-    system = np.zeros((2 * count, 2 * count))
-    system[:count, count:] = np.eye(count)
-    system[count:, :count] = -np.diag(modes.omega_squared) - contact
-    system[count:, count:] = -np.diag(modes.damping) - spring.contact_damping * contact
-    found = np.linalg.eigvals(system)
-    found = found[found.imag > 0]
-    slowest = found[np.abs(found).argmin()]
+    tip = spring.modes().tip
+    found = spring.eigenvalues(spring.tangent * np.outer(tip, tip))
+    slowest = min(found[found.imag > 0], key=abs)
     return np.array([-slowest.real, slowest.imag])
 
 
