@@ -18,6 +18,8 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
         .args(tests)
         // Their matrices are small: two threads wait for each other longer than one computes.
         .env("OPENBLAS_NUM_THREADS", "1")
+        // Many tests start programs, which would compile all modules again.
+        .env_remove("PYTHONDONTWRITEBYTECODE")
         .env("RELAY_CONTACT_FMU", component))
 }
 
