@@ -225,12 +225,9 @@ def main() -> None:
     write_table(paths[1], "time [s],contact.force [N],contact.indentation [m]", rows)
     draw(paths[2], relay, outcomes, shown, rows)
     print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
-    print(
-        f"make: first touch after {1e6 * shown.first_touch:.3f} µs, largest force {shown.largest_force:.2f} N, ", end=""
-    )
-    print(
-        f"bounces {shown.bounces}, for {1e6 * shown.bounce_time:.2f} µs, open for {1e6 * shown.open_time:.2f} µs of it"
-    )
+    touch = f"first touch after {1e6 * shown.first_touch:.3f} µs, largest force {shown.largest_force:.2f} N"
+    bounced = f"for {1e6 * shown.bounce_time:.2f} µs, open for {1e6 * shown.open_time:.2f} µs of it"
+    print(f"make: {touch}, bounces {shown.bounces}, {bounced}")
     print(f"break: bounces {shown.break_bounces}, last separation after {1e3 * shown.break_time:.3f} ms")
     most = max(found, key=lambda outcome: outcome.bounce_time)
     where = f"{1e3 * most.speed:.3g} mm/s, {1e6 * most.damping:.3g} µs"

@@ -18,6 +18,12 @@ STARTS = {
 }
 
 
+def resting(values: Values, *names: str) -> list[float]:
+    """Return outputs at rest."""
+    with COMPONENT.started(values) as contact:
+        return contact.real(*names)
+
+
 def run(
     values: Values, stop: float, step: float, output: list[str], moved: dict[str, Array] | None = None
 ) -> dict[str, Array]:

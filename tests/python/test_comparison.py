@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from relay_contact import Array, RelayContactError
+from relay_contact import Array, RelayContactError, write_table
 from relay_contact.command import main
 from relay_contact.comparison import compare
 
@@ -26,8 +26,7 @@ def resistance(shift: float, factor: float) -> Array:
 def run(tmp_path: Path) -> Path:
     """Write the table of a run."""
     path = tmp_path / "run.csv"
-    np.savetxt(path, np.column_stack((TIME, resistance(0.0, 1.0))), delimiter=",", header="time,contact.resistance",
-               comments="")  # fmt: skip
+    write_table(path, "time,contact.resistance", np.column_stack((TIME, resistance(0.0, 1.0))))
     return path
 
 
@@ -64,8 +63,7 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
 
 def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:
     log = tmp_path / "scope.csv"
-    np.savetxt(log, np.column_stack((1e3 * TIME, 1e3 * resistance(2e-4, 0.9))), delimiter=",", comments="",
-               header="time [ms],resistance [mOhm]")  # fmt: skip
+    write_table(log, "time [ms],resistance [mOhm]", np.column_stack((1e3 * TIME, 1e3 * resistance(2e-4, 0.9))))
     found = compare(run, log, out=tmp_path, shift=0.0)
     assert found.measured.start == pytest.approx(STARTS + 2e-4, abs=2e-6)
     assert found.rows[3][3] == "1.11"
@@ -78,8 +76,8 @@ def test_interruptions_between_the_values_of_a_run(tmp_path: Path) -> None:
     columns = np.column_stack((TIME, resistance(0.0, 1.0), whole))[coarse]
     log.write_text("start [ms],duration [us]\n1,100\n3,40\n6.5,250\n")
     for count in (2, 3):
-        np.savetxt(table, columns[:, :count], delimiter=",", comments="",
-                   header=",".join(("time", "contact.resistance", "chatter.count")[:count]))  # fmt: skip
+        names = ("time", "contact.resistance", "chatter.count")[:count]
+        write_table(table, ",".join(names), columns[:, :count])
         found = compare(table, log)
         assert found.notes[0] == "The run has a value every 500 µs: shorter steps tell interruptions better."
         assert found.rows[0] == ["count", *(("0", "3", "0") if count == 2 else ("3", "3", "1.00"))]

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from component import COMPONENT
 from qualified import CONTACTS, described, judged
 from reference import Reference
-from relay_contact import Array, RelayContactError, Values
+from relay_contact import Array, RelayContactError, Values, write_table
 from relay_contact.command import main
 from relay_contact.figures import three
 from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis
@@ -111,13 +111,12 @@ def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
     count = 30_000
     frequency = np.fft.rfftfreq(count, 2e-5)
     band = (frequency > 50) & (frequency < 2000)
-    course = np.fft.irfft(
-        band * (generator.standard_normal(len(frequency)) + 1j * generator.standard_normal(len(band)))
-    )
+    real, imaginary = generator.standard_normal((2, len(frequency)))
+    course = np.fft.irfft(band * (real + 1j * imaginary))
     time = 2e-5 * (np.arange(count) + generator.uniform(-0.2, 0.2, count))
     path = tmp_path / "road.csv"
     values = 3.0 * course / course.std() + 1.0
-    np.savetxt(path, np.column_stack((time - time[0], values)), delimiter=",", header="time [s],a [g]", comments="")
+    write_table(path, "time [s],a [g]", np.column_stack((time - time[0], values)), digits=17)
     test = history(path)
     assert [each for each in test.record.notes if "unequal" in each]
     assert [each for each in test.record.notes if "before its begin" in each]
@@ -171,8 +170,7 @@ def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.C
     for name, (rate, level, end) in written.items():
         time = np.arange(round(rate * end)) / rate
         values = level * np.minimum(time / 0.05, 1) * np.sin(2 * np.pi * 1190 * time) * (time < 0.2)
-        rows = np.column_stack((time, values))
-        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header="time,a [g]", comments="")
+        write_table(tmp_path / f"{name}.csv", "time,a [g]", np.column_stack((time, values)), digits=17)
     asked = [text for name in written for text in ("--history", str(tmp_path / f"{name}.csv"))]
     assert main(["qualify", str(relay), *asked, "--quick", "--out", str(tmp_path), "--fmu", str(COMPONENT.path)]) == 0
     printed, page = capsys.readouterr().out, (tmp_path / "qualification.html").read_text(encoding="utf-8")
@@ -278,10 +276,7 @@ def oscillator(natural: float, quality: float, stiff: bool = False) -> Response:
         answer[0] = -1 / STEP
     frequency = np.arange(2, 10_000) * 0.5
     turn = np.exp(-2j * np.pi * np.outer(frequency[::40], STEP * np.arange(len(answer))))
-    sampled = turn @ answer * STEP
-    transfer = np.interp(frequency, frequency[::40], sampled.real) + 1j * np.interp(
-        frequency, frequency[::40], sampled.imag
-    )
+    transfer = np.interp(frequency, frequency[::40], turn @ answer * STEP)
     known: Array = np.concatenate(([0.0, 0.5], frequency))
     return Response(100.0, natural, known, np.concatenate((transfer[[0, 0]], transfer)), answer)
 

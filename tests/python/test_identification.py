@@ -14,10 +14,10 @@ import tomlkit
 from scipy.stats import binom, t
 
 import measured
-from component import COMPONENT, ROOT
+from component import COMPONENT, ROOT, resting
 from identification_coverage import of_all, of_record, of_rough_curves, of_rough_frequencies
 from reference import Reference
-from relay_contact import Array, RelayContactError, Values, identification
+from relay_contact import Array, RelayContactError, Values, identification, write_table
 from relay_contact.command import main
 from relay_contact.identification import Identification
 from relay_contact.identification.measurement import Measurement
@@ -189,7 +189,7 @@ def test_a_response_of_the_open_spring_does_not_tell_masses_and_stiffness(tmp_pa
     gain = np.abs([spring.compliances(2 * np.pi * f, 0.0)[1] for f in frequency])
     rows = np.column_stack((frequency, np.ones(15), gain * np.exp(0.001 * chance.standard_normal(15))))
     data = tmp_path / "response.csv"
-    np.savetxt(data, rows, delimiter=",", header="frequency,acceleration,displacement", comments="")
+    write_table(data, "frequency,acceleration,displacement", rows, digits=17)
     names = ["beam.youngsModulus", "beam.density", "tip.mass"]
     result = found(data, parameters=[*names, "beam.stiffnessDamping"])
     assert len(result.missing.keys() & set(names)) == 1
@@ -258,27 +258,20 @@ def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     assert all("keeps its own" in note for note in models)
 
 
-def test_a_ring_down_that_is_sampled_too_coarsely_is_refused(tmp_path: Path) -> None:
-    # At 400 rows per second 223 Hz look like 177 Hz; at 225 like 2 Hz.
-    for rate, message in ((400.0, r"rings at 177 Hz, by the relay's file at 2\d\d Hz, with 400 rows per second: too"),
-                          (225.0, "is 225 rows per second enough"), (500.0, "too coarse")):  # fmt: skip
-        with pytest.raises(RelayContactError, match=message):
-            asked(tmp_path, measured.record(0.25, rate, 0.01, SEED))
-    with pytest.raises(RelayContactError, match=r"a record of 0.00\d+ s: not allowed, allowed is 0.00\d+ s or more"):
-        asked(tmp_path, measured.record(0.005, 1e4, 0.001, SEED))
-
-
-def test_wrong_units_are_told_by_column(tmp_path: Path) -> None:
+def test_wrong_units_and_coarse_ring_downs_are_refused(tmp_path: Path) -> None:
     force, ring = measured.record(0.25, 1e4, 0.01, SEED)
+    # At 400 rows per second 223 Hz look like 177 Hz; at 225 like 2 Hz.
+    too_coarse, enough, coarse = (measured.record(0.25, rate, 0.01, SEED) for rate in (400.0, 225.0, 500.0))
     for wrong, message in (
-        (
-            [replace(force, values=100 * force.values)],
-            "columns travel, force: stiffness .* are the units of the columns",
-        ),
+        ([replace(force, values=100 * force.values)], "columns travel, force: stiffness .* are the units of the col"),
         ([replace(force, over=1e3 * force.over)], "column travel: -0.1 m: not allowed, allowed is up to 0.02 m"),
         ([replace(ring, over=1e3 * ring.over)], "column time: rings at 0.223 Hz, by the relay's file at 2.. Hz"),
         ([replace(force, values=-force.values)], "column force: negative in most rows"),
         ([replace(force, over=-force.over)], "column travel: the force falls as it rises"),
+        (too_coarse, r"rings at 177 Hz, by the relay's file at 2\d\d Hz, with 400 rows per second: too"),
+        (enough, "is 225 rows per second enough"),
+        (coarse, "too coarse"),
+        (measured.record(0.005, 1e4, 0.001, SEED), r"of 0.00\d+ s: not allowed, allowed is 0.00\d+ s or more"),
     ):
         with pytest.raises(RelayContactError, match=message):
             asked(tmp_path, wrong)
@@ -358,8 +351,8 @@ def test_an_uncertain_spring_of_the_fixed_contact_widens_the_interval(tmp_path: 
     relay.write_text("parameters.fixed.file = 'strip.toml'\nuncertainty.fixed.spring.thickness = 0.02\n")
     rows = []
     for travel in np.linspace(-1e-4, 1e-4, 5):
-        with COMPONENT.started({"fixed.file": str(strip), "contact.overtravel": 2e-4 + travel}) as contact:
-            force, moving, fixed = contact.real("contact.force", "tip.displacement", "fixed.displacement")
+        values: Values = {"fixed.file": str(strip), "contact.overtravel": 2e-4 + travel}
+        force, moving, fixed = resting(values, "contact.force", "tip.displacement", "fixed.displacement")
         rows.append(f"{travel},{force}")
     data.write_text("travel,force\n" + "\n".join(rows) + "\n")
     result = found(data, relay=relay, parameters=["beam.youngsModulus"])["beam.youngsModulus"]
@@ -378,8 +371,7 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
     relay = Relay.read(file, COMPONENT)
     for number, (position, overtravel) in enumerate(true.items()):
         values = {**relay.positions[position], "contact.overtravel": 1e-3}
-        with COMPONENT.started(values) as contact:
-            force, indentation = contact.real("preload.force", "preload.indentation")
+        force, indentation = resting(values, "preload.force", "preload.indentation")
         stiffness = force / (1e-3 - indentation)
         travel = np.linspace(-2e-4, 2e-4, 5)
         paths.append(tmp_path / f"{number}.csv")

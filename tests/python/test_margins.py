@@ -82,8 +82,7 @@ def fails(specimen: Specimen, test: Asked, level: float) -> bool:
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_the_interval_of_a_shock_is_that_of_brute_force(seed: int) -> None:
-    relay = drawn(seed)
-    several(relay, SHOCK, 150)
+    several(drawn(seed), SHOCK, 150)
 
 
 @pytest.mark.parametrize(("seed", "beside"), [(4, 1.03), (5, 0.97)])
@@ -160,11 +159,8 @@ def scaled(test: Asked, factor: float) -> Asked:
     """Return a test at another level."""
     match test:
         case Sine():
-            return replace(
-                test,
-                acceleration=factor * (test.acceleration or 0.0),
-                double_amplitude=factor * (test.double_amplitude or 0.0),
-            )
+            levels = {name: factor * getattr(test, name) for name in ("acceleration", "double_amplitude")}
+            return replace(test, **levels)
         case Shock():
             return replace(test, acceleration=factor * test.acceleration)
         case Random():

@@ -31,9 +31,8 @@ def test_the_commands_of_own_spring_print_what_the_page_says(
     runpy.run_path("my_spring.py", run_name="__main__")
     assert alike(forces, capsys.readouterr().out)
     assert main(["qualify", "my-relay.toml", "--standard", "MIL-PRF-28776", "--quick"]) == 0
-    told, printed = (
-        [re.split(" {2,}", line) for line in text.splitlines()] for text in (verdicts, capsys.readouterr().out)
-    )
+    tables = verdicts, capsys.readouterr().out
+    told, printed = ([re.split(" {2,}", line) for line in text.splitlines()] for text in tables)
     for own, row in zip(told, printed[: len(told)], strict=True):
         found = dict(zip(printed[0], row, strict=True))
         assert [name for name, cell in zip(told[0], own, strict=True) if not alike(cell, found[name])] == []

@@ -114,9 +114,9 @@ def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) 
 
 
 def test_the_command_takes_a_spring_file_from_where_it_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "own").mkdir()
-    shutil.copy(ROOT / "scenes/springs/tapered-cube.toml", tmp_path / "own/tapered.toml")
     monkeypatch.chdir(tmp_path)
+    Path("own").mkdir()
+    shutil.copy(ROOT / "scenes/springs/tapered-cube.toml", "own/tapered.toml")
     assert main(["run", "at-rest", "--set", "beam.file=own/tapered.toml"]) == 0
     assert (tmp_path / "at-rest,beam.file=tapered.toml.csv").is_file()
 

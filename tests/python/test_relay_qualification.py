@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from component import COMPONENT
+from component import COMPONENT, resting
 from qualified import CONTACTS, described, judged, placed
 from relay_contact import Values
 from relay_contact.component import half_sine, sine
@@ -48,26 +48,21 @@ def test_a_weakly_held_armature_leaves_its_core_at_the_level_of_the_closed_form(
     levels = {each.part: least_level(each, SLOW) for each in position(WEAK, SLOW).parts}
     # Once it leaves it falls back for good: what it carried fails at the same level, known to 1e-4.
     assert levels[CORE] <= min(levels.values()) * (1 + 2e-4)
-    with COMPONENT.started(WEAK) as contact:
-        push, gap = contact.get("pusher.force"), contact.get("armature.gap")
+    push, gap, held = resting(WEAK, "pusher.force", "armature.gap", "step.minimumStopForce")
     back = 0.5 + 300.0 * (4e-4 - gap)
     # The spring takes part with at most its mass and its rivet's; 1e-4 by the bisection.
     taking_part = 7.85e3 * 15e-3 * 5e-3 * 0.2e-3 + 1e-4
     level = (3.0 - back - push) / ARMATURE["mass"]
     assert levels[CORE] == pytest.approx(level, rel=taking_part / ARMATURE["mass"])
     # By statics alone: gravity of 1 m/s2 is the same load. Linear to the compliance of contact and stop.
-    with COMPONENT.started({**WEAK, "environment.gravity": -1.0}) as contact:
-        eased = contact.get("step.minimumStopForce")
-    with COMPONENT.started(WEAK) as contact:
-        held = contact.get("step.minimumStopForce")
+    (eased,) = resting({**WEAK, "environment.gravity": -1.0}, "step.minimumStopForce")
     assert levels[CORE] == pytest.approx(held / (held - eased), rel=1e-3)
 
 
 def test_a_strongly_held_armature_is_a_fixed_pusher() -> None:
     """It fails by the contact, where the relay with a pusher that does not move does."""
     strong = {**WEAK, "armature.holdForce": 500.0, "armature.unbalance": 0.0, "armature.stopStiffness": 1e8}
-    with COMPONENT.started(strong) as contact:
-        place = contact.get("armature.displacement")
+    (place,) = resting(strong, "armature.displacement")
     still = {**SPRING, "effects.pusher": "Prescribed", "pusher.displacement": place}
     for test in (SLOW, Sine("sine", "", "from memory", acceleration=1.0, frequencies=(10.0, 2500.0), sweep_rate=1.0)):
         moved, fixed = ({each.part: least_level(each, test) for each in position(values, test).parts}
@@ -209,19 +204,13 @@ def test_the_verdict_is_that_of_the_part_that_fails_first(assessed: Assessment) 
         assert np.interp(own.overtravel, own.wear["overtravel"], own.wear["margin"]) == pytest.approx(own.margin)
         assert own.chance
         effects = own.chance.effects
-        assert max(effects, key=lambda name: effects[name]) in (
-            "armature.holdForce", "chance of the largest dip",
-        )  # fmt: skip
+        assert max(effects, key=effects.__getitem__) in ("armature.holdForce", "chance of the largest dip")
     slow = assessed["sine"].margin
     # Of the overtravel, that of the pusher included, half leaves half of the force.
-    forces = []
-    for less in (0.0, slow.overtravel / 2):
-        with COMPONENT.started({**WEAK, "contact.overtravel": -5e-5 - less}) as contact:
-            forces.append(contact.get("contact.force"))
-    assert forces[1] == pytest.approx(forces[0] / 2, rel=0.02)
+    force, held = resting(WEAK, "contact.force", "step.minimumStopForce")
+    half = resting({**WEAK, "contact.overtravel": -5e-5 - slow.overtravel / 2}, "contact.force")
+    assert half == pytest.approx([force / 2], rel=0.02)
     # The hold force, less what it has to carry, is what the level follows: the interval in closed form.
-    with COMPONENT.started(WEAK) as contact:
-        held = contact.get("step.minimumStopForce")
     assert slow.high / slow.margin - 1 == pytest.approx(np.hypot(0.1 * 3.0 / held, 0.05), rel=0.08)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from component import COMPONENT, ROOT
+from component import COMPONENT, ROOT, resting
 from qualified import described, placed
 from relay_contact import RelayContactError, Values
 from relay_contact.qualification import Relay
@@ -19,8 +19,7 @@ OPEN: Any = {"contact.overtravel": -1e-3}
 
 def frequency(**values: Any) -> float:  # noqa: ANN401
     """Give the first frequency of the open spring, Hz."""
-    with COMPONENT.started(OPEN | {name.replace("__", "."): value for name, value in values.items()}) as contact:
-        return contact.real("preload.frequency")[0]
+    return resting(OPEN | {name.replace("__", "."): value for name, value in values.items()}, "preload.frequency")[0]
 
 
 @pytest.mark.parametrize("file", ["", str(SEGMENTS), str(MODES)])
@@ -31,22 +30,18 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
     if file != str(MODES):
         return
     closed: Any = {"beam.file": file, "contact.overtravel": 1e-3, "contact.curvatureRadius": 1.0}
-    forces = []
-    for values in (closed, {**closed, "spring.stiffness": 1.21}):
-        with COMPONENT.started(values) as contact:
-            forces += [contact.real("preload.force")[0] / (1e-3 - contact.real("preload.indentation")[0])]
-    assert forces[1] == pytest.approx(1.21 * forces[0], rel=1e-9)
+    pairs = (
+        resting({**closed, "spring.stiffness": each}, "preload.force", "preload.indentation") for each in (1, 1.21)
+    )
+    own, stiff = (force / (1e-3 - indentation) for force, indentation in pairs)
+    assert stiff == pytest.approx(1.21 * own, rel=1e-9)
 
 
 @pytest.mark.parametrize("file", ["", str(SEGMENTS)])
 def test_the_spring_is_as_stiff_with_its_parameters_spelled_for_python(file: str) -> None:
     named: Any = {"beam.file": file, "beam.youngsModulus": 2e11, "spring.stiffness": 1.21}
     spelled: Any = {"beam_file": file, "beam_youngsModulus": 2e11, "spring.stiffness": 1.21}
-    frequencies = []
-    for values in (named, spelled):
-        with COMPONENT.started(values) as contact:
-            frequencies += contact.real("preload.frequency")
-    assert frequencies[0] == frequencies[1]
+    assert resting(named, "preload.frequency") == resting(spelled, "preload.frequency")
 
 
 @pytest.mark.parametrize(
@@ -114,8 +109,8 @@ def test_the_spring_of_the_fixed_contact_has_entries_of_its_own(tmp_path: Path) 
 
     def compliances(changes: dict[str, float]) -> tuple[float, float]:
         """Return those of the moving and of the fixed contact's spring, m/N."""
-        with COMPONENT.started({"contact.overtravel": 1e-3, "fixed.file": str(strip), **changes}) as contact:
-            force, moving, fixed = contact.real("contact.force", "tip.displacement", "fixed.displacement")
+        values: Values = {"contact.overtravel": 1e-3, "fixed.file": str(strip), **changes}
+        force, moving, fixed = resting(values, "contact.force", "tip.displacement", "fixed.displacement")
         return moving / force, -fixed / force
 
     moving, fixed = compliances({})

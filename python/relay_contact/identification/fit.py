@@ -188,9 +188,8 @@ class Fit:
             max_nfev=TRIALS,
         )
         if found.status == 0:
-            raise RelayContactError(
-                f"no least squares after {TRIALS} trials: begin from other values in the relay's file"
-            )
+            text = "begin from other values in the relay's file"
+            raise RelayContactError(f"no least squares after {TRIALS} trials: {text}")
         self.logarithms = found.x
         jacobian(found.x)
         assert last is not None

@@ -68,11 +68,10 @@ class Laboratory:
         found = {**values, **ALONE, **own, **measurement.settings}
         if kind in (RINGDOWN, RESPONSE, CHATTER) and not measurement.is_open and self.overtravel(found) <= 0:
             overtravel = self.overtravel(found)
-            text = f"in the position {measurement.position} the contact is open (contact.overtravel = {overtravel:g} m)"
-            allowed = "a closed one, or the line `# contact = open` before the columns"
-            raise RelayContactError(
-                f"{measurement.path}: {measurement.kind}: {text}: not allowed, allowed is {allowed}"
-            )
+            what = f"{measurement.kind}: in the position {measurement.position} the contact is open"
+            allowed = "allowed is a closed one, or the line `# contact = open` before the columns"
+            text = f"{what} (contact.overtravel = {overtravel:g} m): not allowed, {allowed}"
+            raise RelayContactError(f"{measurement.path}: {text}")
         return found
 
     def predict(self, measurement: Measurement, values: Values) -> Array:

@@ -254,7 +254,9 @@ def transient(position: Position, test: Transient) -> Found:
     start = test.record.time[0] if isinstance(test, History) else 0.0
     failing: Lengths = {}
     if isinstance(test, Shock):
-        course = opening_run(specimen, shown)
+        # In the direction that opens a closed contact, or closes an open one.
+        wanted = "closing" if specimen.is_open else "opening"
+        course = next(rows for way, *_, rows in shown if way == wanted)[:-1]
     else:
         failing, course = failing_run(specimen, piece, level, start)
     curves = {"time": course[:, 0].tolist(), "course": course[:, 1].tolist(), "failing": failing, **excited(test)}
@@ -286,12 +288,6 @@ def transient_level(position: Position, test: Transient) -> tuple[Level, list[Ru
     start = test.record.time[0] if isinstance(test, History) else 0.0
     where, limits, weakest = words(position, test, way, piece, start)
     return Level(factor, decides, own[0][1].guess, weakest, limits), runs, piece, where, ways[way] * factor
-
-
-def opening_run(specimen: Specimen, runs: list[Any]) -> Array:
-    """Return the run of a shock at its level in the direction that opens a closed contact, or closes an open one."""
-    wanted = "closing" if specimen.is_open else "opening"
-    return np.asarray(next(rows for way, *_, rows in runs if way == wanted)[:-1])
 
 
 def failing_run(specimen: Specimen, piece: Piece, level: float, start: float) -> tuple[Lengths, Array]:

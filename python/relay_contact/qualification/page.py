@@ -184,12 +184,6 @@ def springs(relay: Relay) -> list[tuple[str, str]]:
     return [(name, content.decode()) for name, content in files.items()]
 
 
-def evidence_of(tested: Tested) -> str:
-    """Return the mark of a test whose numbers were not read in the standard."""
-    level = tested.first.evidence
-    return "" if level in LEVELS[:2] else f", {level}"
-
-
 def position_context(assessment: Assessment, component: Component, name: str, values: Values) -> dict[str, Any]:
     """Return what the page says of a position of the coil."""
     relay = assessment.relay
@@ -203,10 +197,13 @@ def position_context(assessment: Assessment, component: Component, name: str, va
     single = "One model is judged: how far another form of the model would move the margin is not known."
     told = several if count > 1 else single
     covered = UNKNOWN if relay.is_certain else ALONE
-    cells = [
-        {"cells": row, "source": f"{tested.first.clause}{evidence_of(tested)}".strip(", ") if number == 0 else ""}
-        for tested in mine for number, row in enumerate(rows(tested))
-    ]  # fmt: skip
+    cells = []
+    for tested in mine:
+        # What was not read in the standard is told.
+        unread = [tested.first.evidence] if tested.first.evidence not in LEVELS[:2] else []
+        first, *others = rows(tested)
+        source = ", ".join(filter(None, [tested.first.clause, *unread]))
+        cells += [{"cells": first, "source": source}, *({"cells": row, "source": ""} for row in others)]
     notes = [note for tested in mine for note in tested.notes]
     context = {
         "name": name, "rest": "", "sketch": "", "form": f"{covered} {told} Form of the model: {described}.",

@@ -353,9 +353,8 @@ class Position:
                 found = self.turn(test, len(surface.values) - len(drawn) + at, float(expected[at]))
                 errors.append(float(np.abs(np.expm1(expected[at] - found))))
             tried = int(np.count_nonzero(turns)) + len(near)
-        others = self.dips(test, independent[:, -1]) * np.maximum(
-            1 + self.model.uncertainty * independent[:, -2] / TWO_SIDED, LEAST
-        )
+        left_out = np.maximum(1 + self.model.uncertainty * independent[:, -2] / TWO_SIDED, LEAST)
+        others = self.dips(test, independent[:, -1]) * left_out
         return Drawn(np.exp(surface(scores) + told(scores)) * others, max(errors), tried)
 
     def chance(self, test: Test, drawn: Drawn, factor: float) -> Chance:
