@@ -263,9 +263,8 @@ def test_frequencies_and_hysteresis_with_friction_are_those_of_a_second_solution
     said = run("friction")
     assert "  without friction: 5.08 cN at 1250 Hz" in said
     assert "  with: 4.91 cN at 1250 Hz" in said
-    for length, overtravel, *frequencies in zip(
-        *read_table(tmp_path / "friction-frequencies.csv").values(), strict=True
-    ):
+    columns = read_table(tmp_path / "friction-frequencies.csv").values()
+    for length, overtravel, *frequencies in zip(*columns, strict=True):
         spring: Values = {"effects.axialForce": "None", "beam.length": length, "contact.overtravel": overtravel}
         for height, found in zip((0.0, 1e-4, 3e-4, 1e-3), frequencies, strict=True):
             # Both from the characteristic equation; 12 digits are written.

@@ -17,7 +17,7 @@ from relay_contact.spring import SPRING_FILES
 STRICT = ConfigDict(extra="forbid")
 """No entries that the schema does not name."""
 WORDS = {
-    r"a (valid )?dictionary.*": "a table",
+    r"a (valid )?(dictionary|mapping).*": "a table",
     r"a valid (list|tuple)": "a list",
     "a valid boolean": "true or false",
     "valid ": "",

@@ -17,6 +17,7 @@ from reference import Reference
 from relay_contact import Array, RelayContactError, Values, write_table
 from relay_contact.command import main
 from relay_contact.figures import three
+from relay_contact.files import read_toml
 from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.page import UNKNOWN
@@ -298,9 +299,8 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     # Without sines, Rice's own formula.
     bare = replace(test, sines=())
     rms_, mean = response.moments(bare)
-    assert response.reserve / response.random(bare, 0.0) == pytest.approx(
-        rms_ * np.sqrt(2 * np.log(mean * 60 / np.log(2))), rel=1e-12
-    )
+    rice = rms_ * np.sqrt(2 * np.log(mean * 60 / np.log(2)))
+    assert response.reserve / response.random(bare, 0.0) == pytest.approx(rice, rel=1e-12)
     tiny = replace(test, sines=((200.0, 1e-6),))
     assert response.random(tiny, 0.0) == pytest.approx(response.random(bare, 0.0), rel=1e-4)
 
@@ -367,9 +367,7 @@ def test_sines_that_do_not_fit_together(entries: dict[str, Any], message: str) -
 def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     """Half of the normal ones, reversed: twice the margin, in the other direction."""
     spring = Relay.read("finite-elements", COMPONENT).positions["contact closed"]["beam.file"]
-    parts = [
-        float(line.split("=")[1]) for line in Path(str(spring)).read_text().splitlines() if "participation" in line
-    ]
+    parts = [mode["participation"] for mode in read_toml(Path(str(spring)))["mode"]]
     relay = tmp_path / "relay.toml"
     text = f"parameters.beam.file = '{spring}'\nparameters.contact.overtravel = 8e-4\n"
     text += "parameters.beam.stiffnessDamping = 5e-6\nparameters.contact.damping = 2e-6\n"

@@ -128,9 +128,8 @@ def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_pat
 
 def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
     """The frequencies of a contact with a larger exponent than the component allows; and a start at the end."""
-    steep = np.array(
-        [measured.rough(each, contact_stiffnessExponent=0.94).frequency() for each in measured.OVERTRAVELS]
-    )
+    relays = (measured.rough(each, contact_stiffnessExponent=0.94) for each in measured.OVERTRAVELS)
+    steep = np.array([each.frequency() for each in relays])
     for start in (0.5, 0.9):
         data, relay = rough_files(tmp_path, steep)
         relay.write_text(relay.read_text().replace("stiffnessExponent = 0.5", f"stiffnessExponent = {start}"))
@@ -292,10 +291,9 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     assert holds(result, "beam.youngsModulus", measured.TRUTH["beam.youngsModulus"])
     # It is uncertain by as much as the mass that moves is: frequency 293 Hz, by 10 % of the rivet.
     stiff = {"beam.youngsModulus": measured.TRUTH["beam.youngsModulus"], **measured.AWAY}
-    frequencies = [
-        Reference({**stiff, "tip.mass": measured.TRUTH["tip.mass"] * part}).modes().omega_squared for part in (1, 1.1)
-    ]
-    moved = float(np.log(min(frequencies[0]) / min(frequencies[1])))
+    springs = (Reference({**stiff, "tip.mass": measured.TRUTH["tip.mass"] * part}) for part in (1, 1.1))
+    squares = [each.modes().omega_squared.min() for each in springs]
+    moved = float(np.log(squares[0] / squares[1]))
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
     assert result["beam.youngsModulus"].half > result["beam.youngsModulus"].by_others["tip.mass"]
     assert f"beam.youngsModulus: of its interval, tip.mass {100 * moved:.2g} % comes" in " ".join(silent(result))

@@ -134,9 +134,8 @@ def test_false_makes_of_both_contacts(name: str) -> None:
         ends = np.append(ends[ends > starts[0]], found["time"][-1])[: len(starts)]
         lasting = ends - starts
         assert (lasting > relay.values["second.minimumDuration"]).all()
-        count, longest, total = (
-            found[f"{monitor}.{name}"][-1] for name in ("falseMakes", "longestFalseMake", "totalFalseMake")
-        )
+        names = "falseMakes", "longestFalseMake", "totalFalseMake"
+        count, longest, total = (found[f"{monitor}.{name}"][-1] for name in names)
         assert count == len(starts) >= 2
         assert longest == pytest.approx(np.max(lasting), rel=0, abs=2 * LOCATED)
         assert total == pytest.approx(np.sum(lasting), rel=0, abs=2 * len(starts) * LOCATED)

@@ -31,9 +31,8 @@ class Beam:
         modulus, density = float(STARTS["beam.youngsModulus"]), float(STARTS["beam.density"])
         bending, per_length = modulus * width * thickness**3 / 12, density * width * thickness
         before = max(1, round(ELEMENTS * place / length))
-        nodes = np.concatenate(
-            [np.linspace(0, place, before + 1), np.linspace(place, length, ELEMENTS - before + 1)[1:]]
-        )
+        before_it = np.linspace(0, place, before, endpoint=False)
+        nodes = np.append(before_it, np.linspace(place, length, ELEMENTS - before + 1))
         parts = [(k, k + 1, bending, per_length, h) for k, h in enumerate(np.diff(nodes).tolist())]
         rigidity, mass = assembled(len(nodes), parts)
         # The load is that of all nodes moving alike; the first is clamped.

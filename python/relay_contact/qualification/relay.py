@@ -1,11 +1,13 @@
 """A relay as its file describes it: contacts, coil positions, and how well its parameters are known."""
 
 import sys
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
+import pydantic.dataclasses
 from pydantic import Field
 
 from relay_contact import schema
@@ -44,12 +46,15 @@ class CoilPosition(schema.Table):
     parameters: schema.Nested
 
 
-class Rival(schema.Table):
+@pydantic.dataclasses.dataclass(frozen=True, config=schema.STRICT)
+class Model:
     """One of the models by which a relay is judged."""
 
-    name: Annotated[str, Field(min_length=1)] | None = None
-    parameters: schema.Nested
+    name: Annotated[str, Field(min_length=1)] = ""
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+    """Of the component, in place of those of the relay, in all positions."""
     uncertainty: schema.Share = 0.0
+    """Of margins, as a part of them with 95 % confidence, by what the model leaves out."""
 
 
 class Surfaces(schema.Table):
@@ -68,21 +73,10 @@ class Content(schema.Table):
     position: Annotated[list[CoilPosition], Field(min_length=1, default_factory=lambda: [CoilPosition(parameters={})])]
     uncertainty: schema.Nested
     correlation: Correlation = Correlation()
-    model: Annotated[list[Rival], Field(min_length=1, default_factory=lambda: [Rival(parameters={})])]
+    model: Annotated[list[Model], Field(min_length=1, default_factory=lambda: [Model()])]
     monitor: Monitor = Monitor()
     contact: Surfaces = Surfaces()
     axes: dict[str, list[float]] = Field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Model:
-    """One of the models by which a relay is judged."""
-
-    name: str
-    parameters: Values
-    """Of the component, in place of those of the relay, in all positions."""
-    uncertainty: float
-    """Of margins, as a part of them with 95 % confidence, by what the model leaves out."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +148,7 @@ class Relay:
             changed = parameters(path, rival.parameters, (*place, "parameters"), component)
             if twin := next((each.name for each in models.values() if each.parameters == changed), None):
                 raise schema.refused(path, place, name, f"has the parameters of {twin}")
-            models[name] = Model(name, changed, rival.uncertainty)
+            models[name] = replace(rival, name=name, parameters=changed)
             with schema.at(path, *place):
                 for uncertain in changed.keys() & uncertainty.keys():
                     uncertainty[uncertain].check(uncertain, component.value(changed, uncertain), name)
@@ -189,7 +183,7 @@ def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> Non
             raise RelayContactError(f"{name}: {text} {apart:g} Ohm while it is open")
 
 
-def parameters(path: Path, table: dict[str, Any], place: schema.Place, component: Component) -> Values:
+def parameters(path: Path, table: Mapping[str, Any], place: schema.Place, component: Component) -> Values:
     """Return the parameters in a table of a relay's file, and the inputs that belong to it."""
     for name, keys, value in schema.leaves(table):
         if name.startswith(OF_THE_TEST):
