@@ -1,16 +1,15 @@
 //! The static equilibrium of every combination of parts: it is where the motion comes to rest, whichever way the inputs took. The
 //! motion knows springs by their modes and the equilibrium by their static compliances.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Model, Spring};
+use relay_contact::reference::Spring;
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, FrictionKind, PusherKind, RealOutput};
 use testing::near;
-use testing::springs::{mode, of_modes, of_segments, segment, spring_file};
+use testing::springs;
 
 /// Where support (m) and pusher (m) end, and the constant acceleration there (m/s2).
 type End = (f64, f64, f64);
@@ -46,35 +45,18 @@ fn relay(scene: &mut Scene) {
 }
 
 fn forked(scene: &mut Scene) {
-    let whole = segment(scene.beam.length, [scene.beam.width; 2], [scene.beam.thickness; 2]);
-    let segments = Segments {
-        segments: vec![whole],
-        fork_position: Some(0.7 * scene.beam.length),
-        ..Segments::default()
-    };
-    scene.spring = spring_file("forked.toml", Shape::Segments(segments));
+    scene.spring = springs::forked(scene, 0.7);
 }
 
 /// The moving spring by its modes.
 fn by_modes(scene: &mut Scene) {
     let mut alone = scene.clone();
     alone.fixed_spring = None;
-    let model = Model::new(&alone, 0.0).unwrap();
-    let own = model.modes.iter();
-    let modes = own.clone().map(|own| GivenMode {
-        rotation: Some(own.rotation),
-        pusher: Some(own.pusher),
-        parallel: Some(own.parallel),
-        ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
-    });
-    let compliance = own.map(|own| own.tip.powi(2) / own.omega_squared).sum();
-    scene.spring = spring_file("modes.toml", of_modes(compliance, modes));
+    scene.spring = springs::by_modes(&alone);
 }
 
 pub fn on_spring(scene: &mut Scene) {
-    let (length, width) = (scene.beam.length, [scene.beam.width; 2]);
-    let whole = segment(length, width, [1.5 * scene.beam.thickness; 2]);
-    scene.fixed_spring = spring_file("fixed.toml", of_segments([whole]));
+    scene.fixed_spring = springs::uniform_spring(scene, 1.0, 1.5);
 }
 
 /// Compressed by 0.4 of its buckling load.

@@ -9,15 +9,12 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::rig::Rig;
-use testing::scenes::{shaken, supported};
-use testing::springs::{of_segments, segment, spring_file};
-use testing::{close, near};
+use testing::scenes::{bending_stiffness, shaken, supported, tip_stiffness};
+use testing::{close, near, springs};
 
 /// The scene with a uniform fixed spring of this width and thickness over those of the moving one.
 fn on_spring(mut scene: Scene, width: f64, thickness: f64) -> Scene {
-    let beam = &scene.beam;
-    let whole = segment(beam.length, [width * beam.width; 2], [thickness * beam.thickness; 2]);
-    scene.fixed_spring = spring_file("fixed.toml", of_segments([whole]));
+    scene.fixed_spring = springs::uniform_spring(&scene, width, thickness);
     scene
 }
 
@@ -89,10 +86,7 @@ fn gravity_and_contact_force_bend_both_springs() {
     scene = on_spring(scene, 0.5, 2.0);
     let model = Model::new(&scene, 1e-5).unwrap();
     let beam = &scene.beam;
-    let (load, bending) = (
-        beam.density * beam.width * beam.thickness,
-        beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0,
-    );
+    let (load, bending) = (beam.density * beam.width * beam.thickness, bending_stiffness(&scene));
     let length = beam.length;
     // Uniform cantilevers (Timoshenko): F L^3 / (3 EI) and q L^4 / (8 EI). The fixed one has the same load, 4 times the stiffness.
     let (per_force, per_load) = (length.powi(3) / (3.0 * bending), length.powi(4) / (8.0 * bending));
@@ -150,9 +144,7 @@ fn the_fixed_contact_moves_as_its_outputs_say() {
 #[test]
 fn a_large_push_of_the_fixed_contact_bends_both_springs() {
     let scene = on_spring(plain(1e-8), 0.5, 2.0);
-    let beam = &scene.beam;
-    let bending = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
-    let per_force = beam.length.powi(3) / (3.0 * bending);
+    let per_force = 1.0 / tip_stiffness(&scene);
     let hertz = 4.0 / 3.0 * reduced_modulus(&scene.contact) * scene.contact.curvature_radius.sqrt();
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
     for push in [1e-3, -1e-4] {

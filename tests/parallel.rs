@@ -1,19 +1,18 @@
 //! Contacts side by side: against one contact of twice the constant, by beam formulas, and what counts as interrupted.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Model, reduced_modulus};
-use relay_contact::scene::spring::{GivenMode, PointMass, Segments, Shape};
-use relay_contact::scene::{Contact, Scene};
+use relay_contact::scene::Scene;
+use relay_contact::scene::spring::{PointMass, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind,
 };
 use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
-use testing::springs::{mode, of_modes, segment, spring_file};
+use testing::springs::{self, by_modes, segment, spring_file};
 use testing::{close, near};
 
 /// The scene with a parallel contact, equal to the first.
@@ -32,13 +31,7 @@ fn doubled(mut scene: Scene) -> Scene {
 
 /// The uniform spring forked at a share of its length.
 fn forked(mut scene: Scene, share: f64) -> Scene {
-    let beam = &scene.beam;
-    let segments = Segments {
-        segments: vec![segment(beam.length, [beam.width; 2], [beam.thickness; 2])],
-        fork_position: Some(share * beam.length),
-        ..Segments::default()
-    };
-    scene.spring = spring_file("forked.toml", Shape::Segments(segments));
+    scene.spring = springs::forked(&scene, share);
     scene
 }
 
@@ -221,24 +214,15 @@ fn each_conducts_by_its_own_stiffness() {
     let modulus = reduced_modulus(&scene.contact);
     for law in [ContactLawKind::Hertz, ContactLawKind::Rough] {
         scene.effects.contact_law = law;
-        let (
-            Contact {
-                curvature_radius,
-                stiffness,
-                stiffness_force,
-                stiffness_exponent,
-                ..
-            },
-            parallel,
-        ) = (&scene.contact, &scene.parallel);
+        let (contact, parallel) = (&scene.contact, &scene.parallel);
         let of_each = [
-            (*curvature_radius, *stiffness),
+            (contact.curvature_radius, contact.stiffness),
             (parallel.curvature_radius, parallel.stiffness),
         ];
         let conducts = |force: f64, (radius, stiffness): (f64, f64)| {
             let stiffness = match law {
                 ContactLawKind::Hertz => (6.0 * modulus.powi(2) * radius * force).cbrt(),
-                _ => stiffness * (force / stiffness_force).powf(*stiffness_exponent),
+                _ => stiffness * (force / contact.stiffness_force).powf(contact.stiffness_exponent),
             };
             stiffness / (scene.resistance.resistivity * modulus)
         };
@@ -278,16 +262,9 @@ fn modes_of_a_forked_spring_are_that_spring() {
     scene.parallel.offset = 1e-6;
     scene.solver.modes = 12;
     scene.effects.axial_force = AxialForceKind::None;
-    let model = Model::new(&scene, 0.0).unwrap();
     let mut given = scene.clone();
-    let own = model.modes.iter();
-    let modes = own.clone().map(|own| GivenMode {
-        parallel: Some(own.parallel),
-        ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
-    });
-    // Of all modes: the same truncation on both sides.
-    let compliance = own.map(|own| own.tip.powi(2) / own.omega_squared).sum();
-    given.spring = spring_file("modes.toml", of_modes(compliance, modes));
+    // The compliance of all modes: the same truncation on both sides.
+    given.spring = by_modes(&scene);
     let [expected, found] = [&scene, &given].map(|scene| course(scene, 1e-5, 300, BOTH).0.concat());
     // The segments' static compliance is that of all modes, here that of 24.
     let difference = largest_difference(&found, &expected);

@@ -4,7 +4,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ContactLawKind, PusherKind, RealOutput};
-use testing::scenes::shaken;
+use testing::scenes::{bending_stiffness, shaken};
 use testing::{close, near};
 
 /// A contact open by 0.1 mm without a pusher, and the specimen without its rivet.
@@ -30,7 +30,7 @@ fn pusher_and_contact_share_the_bending_of_the_spring() {
     let mut scene = pushed(Scene::default());
     scene.environment.gravity = 30.0;
     let (length, x) = (scene.beam.length, scene.pusher.position);
-    let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
+    let bending = bending_stiffness(&scene);
     let load = scene.beam.density * scene.beam.width * scene.beam.thickness * 30.0;
     let by_contact = length.powi(3) / (3.0 * bending);
     let across = x * x * (3.0 * length - x) / (6.0 * bending);

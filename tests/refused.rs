@@ -8,7 +8,8 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, PusherKind, ResistanceKind,
 };
-use testing::springs::{mode, of_modes, of_segments, segment, spring_file};
+use testing::scenes::press;
+use testing::springs::{mode, of_modes, spring_file, uniform_spring};
 
 /// Changes of a scene, and parts of what is said of it; nothing is said where it can be simulated.
 type Case = (fn(&mut Scene, &mut Inputs), &'static [&'static str]);
@@ -50,9 +51,7 @@ fn gripping(scene: &mut Scene, coefficient: f64, initial: f64) {
 
 /// A fixed contact on the moving spring at half its thickness.
 fn on_soft_spring(scene: &mut Scene) {
-    let beam = &scene.beam;
-    let half = segment(beam.length, [beam.width; 2], [0.5 * beam.thickness; 2]);
-    scene.fixed_spring = spring_file("fixed.toml", of_segments([half]));
+    scene.fixed_spring = uniform_spring(scene, 1.0, 0.5);
 }
 
 /// A spring given by a mode.
@@ -132,13 +131,6 @@ const FIXED_SPRING: &[Case] = &[
     (|scene, _| following(scene), &["effects.axialForce = FromDeflection: not allowed with fixed.file"]),
 ];
 
-/// Presses the spring with a share of its buckling load as a column that is clamped at one end, `pi^2 E I / (4 L^2)`.
-fn press(scene: &mut Scene, share: f64) {
-    let beam = &mut scene.beam;
-    let bending = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
-    beam.axial_force = share * (std::f64::consts::PI / (2.0 * beam.length)).powi(2) * bending;
-}
-
 #[rustfmt::skip]
 const AXIAL_FORCE: &[Case] = &[
     (|scene, _| press(scene, 0.999_999), &[]),
@@ -175,10 +167,10 @@ fn what_does_not_go_together_is_refused_with_names_and_values() {
     check(|scene| scene.effects.parallel_contact = true, PARALLEL_CONTACT);
     check(|scene| scene.effects.pusher = PusherKind::Prescribed, PUSHER);
     check(|scene| scene.effects.pusher = PusherKind::Armature, ARMATURE);
-    let on_spring = |scene: &mut Scene| {
-        scene.fixed_spring = spring_file("fixed.toml", of_segments([segment(0.015, [4e-3; 2], [2e-4; 2])]));
-    };
-    check(on_spring, FIXED_SPRING);
+    check(
+        |scene| scene.fixed_spring = uniform_spring(scene, 1.0, 1.0),
+        FIXED_SPRING,
+    );
     check(
         |scene| scene.effects.axial_force = AxialForceKind::Prescribed,
         AXIAL_FORCE,

@@ -4,12 +4,12 @@ use anyhow::{Result, ensure};
 use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::variables::ContactLawKind;
-use testing::scenes::accelerated;
+use testing::scenes::{accelerated, undamped};
 
 use crate::case::{Check, cases, closest};
 use crate::energy_balance::{balances, square};
 use crate::ride::{Ride, Segment, changed, conserved};
-use testing::rig::{Rig, compose, hertz, oscillator, undamped};
+use testing::rig::{Rig, compose, hertz, oscillator};
 
 cases! { CASES:
     "Contact 100 times stiffer", "contact oscillations of high frequency"

@@ -7,8 +7,8 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 
 use crate::case::{Check, cases, closest, worst};
-use testing::rig::{Rig, undamped};
-use testing::scenes::shaken;
+use testing::rig::Rig;
+use testing::scenes::{shaken, undamped};
 
 cases! { CASES:
     "1000 contact cycles and more, no damping at all, 1 ms communication steps",

@@ -1,14 +1,11 @@
 //! Extreme springs.
 
-use std::f64::consts::PI;
-
 use anyhow::Result;
 use relay_contact::scene::Scene;
-use relay_contact::variables::AxialForceKind;
 
 use crate::case::{Check, cases};
 use crate::ride::{Ride, Segment, changed};
-use testing::rig::undamped;
+use testing::scenes::{press, undamped};
 
 cases! { CASES:
     "Spring without damping", "only the contact dissipates"
@@ -65,12 +62,4 @@ fn pushed_within_tolerance() -> Result<Vec<Check>> {
         ..Ride::new(scene, [Segment::accelerated(1e-5, 4.6)])
     }
     .checks()
-}
-
-/// Presses the spring with a share of its buckling load, `pi^2 E I / (4 L^2)`.
-fn press(scene: &mut Scene, share: f64) {
-    let beam = &mut scene.beam;
-    let bending_stiffness = beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0;
-    beam.axial_force = share * PI * PI * bending_stiffness / (4.0 * beam.length.powi(2));
-    scene.effects.axial_force = AxialForceKind::Prescribed;
 }

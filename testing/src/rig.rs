@@ -8,8 +8,6 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::PusherKind;
 
 use crate::scenes::shaken;
-// For those who need both.
-pub use crate::scenes::undamped;
 
 /// A model with its state.
 #[derive(Debug)]

@@ -1,12 +1,13 @@
 //! Scenes for tests, with reference values computed without the library.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::path::PathBuf;
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput};
+use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, RealOutput};
 
 /// Every contact law.
 pub const LAWS: [ContactLawKind; 4] = [
@@ -47,10 +48,21 @@ pub fn at_rest(scene: &Scene, output: RealOutput) -> f64 {
     simulation.real(output)
 }
 
+/// Bending stiffness of the uniform spring, `E I`, N m2.
+pub fn bending_stiffness(scene: &Scene) -> f64 {
+    let beam = &scene.beam;
+    beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0
+}
+
 /// Stiffness of the tip against a force there, `3 E I / L^3`, N/m.
 pub fn tip_stiffness(scene: &Scene) -> f64 {
-    let beam = &scene.beam;
-    3.0 * (beam.youngs_modulus * beam.width * beam.thickness.powi(3) / 12.0) / beam.length.powi(3)
+    3.0 * bending_stiffness(scene) / scene.beam.length.powi(3)
+}
+
+/// Presses the spring with a share of its buckling load as a column that is clamped at one end, `pi^2 E I / (4 L^2)`.
+pub fn press(scene: &mut Scene, share: f64) {
+    scene.effects.axial_force = AxialForceKind::Prescribed;
+    scene.beam.axial_force = share * (PI / (2.0 * scene.beam.length)).powi(2) * bending_stiffness(scene);
 }
 
 /// What `solver.tolerance` is relative to, N: the preload force, or, if larger, that of the spring bent by the

@@ -1,10 +1,11 @@
 //! Springs of files: by their parts, and random ones of segments, tapered, stepped, with masses, beyond their contact, on
 //! clamps from rigid to nearly hinged.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fastrand::Rng;
-use relay_contact::reference::Spring;
+use relay_contact::reference::{Model, Spring};
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, PointMass, Segment, Segments, Shape, SpringFile};
 
@@ -44,6 +45,38 @@ pub fn segment(length: f64, width: [f64; 2], thickness: [f64; 2]) -> Segment {
         youngs_modulus: None,
         density: None,
     }
+}
+
+/// A uniform spring of this width and thickness over those of the scene's own.
+pub fn uniform_spring(scene: &Scene, width: f64, thickness: f64) -> Option<Arc<SpringFile>> {
+    let beam = &scene.beam;
+    let whole = segment(beam.length, [width * beam.width; 2], [thickness * beam.thickness; 2]);
+    spring_file("uniform.toml", of_segments([whole]))
+}
+
+/// The scene's own spring, forked at a share of its length.
+pub fn forked(scene: &Scene, share: f64) -> Option<Arc<SpringFile>> {
+    let beam = &scene.beam;
+    let segments = Segments {
+        segments: vec![segment(beam.length, [beam.width; 2], [beam.thickness; 2])],
+        fork_position: Some(share * beam.length),
+        ..Segments::default()
+    };
+    spring_file("forked.toml", Shape::Segments(segments))
+}
+
+/// The scene's spring by its modes, with their compliance.
+pub fn by_modes(scene: &Scene) -> Option<Arc<SpringFile>> {
+    let model = Model::new(scene, 0.0).expect("a scene that can be simulated");
+    let own = model.modes.iter();
+    let compliance = own.clone().map(|own| own.tip.powi(2) / own.omega_squared).sum();
+    let modes = own.map(|own| GivenMode {
+        rotation: Some(own.rotation),
+        pusher: Some(own.pusher),
+        parallel: Some(own.parallel),
+        ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
+    });
+    spring_file("modes.toml", of_modes(compliance, modes))
 }
 
 /// A mode of this frequency (Hz) with what every mode has: displacement of the contact (1/sqrt(kg)), load per base acceleration

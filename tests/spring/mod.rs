@@ -21,10 +21,6 @@ fn with(mut scene: Scene, shape: Shape) -> Scene {
     scene
 }
 
-fn made_of(scene: Scene, segments: Segments) -> Scene {
-    with(scene, Shape::Segments(segments))
-}
-
 fn uniform(length: f64, width: f64, thickness: f64) -> Segment {
     segment(length, [width; 2], [thickness; 2])
 }
@@ -174,7 +170,7 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
             fork_position: None,
             clamp_stiffness: Some(clamp).filter(|clamp| clamp.is_finite()),
         };
-        let scene = made_of(scene, segments);
+        let scene = with(scene, Shape::Segments(segments));
         agree(&scene, &frequencies(&expected, clamp, 20.0, 6));
         // With the contact closed, as `preload.frequency` reports it.
         let mut free = scene.clone();
@@ -224,7 +220,7 @@ fn a_column_on_a_soft_clamp_buckles_at_its_root() {
             clamp_stiffness: Some(clamp),
             ..Segments::default()
         };
-        let spring = Spring::new(&made_of(scene.clone(), segments));
+        let spring = Spring::new(&with(scene.clone(), Shape::Segments(segments)));
         let rest = |l: f64| l * (l * length).tan() - clamp / stiffness;
         let l = relay_contact::reference::bracketed(rest, 0.0, 0.999_999_999 * TAU / 4.0 / length).unwrap();
         let expected = stiffness * l * l;
