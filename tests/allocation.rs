@@ -47,10 +47,8 @@ fn a_communication_step_allocates_nothing() {
         assert_eq!(contact.set_boolean("effects.energy", true), fmi2OK);
         contact.initialize();
         let begin = |n| {
-            let (inputs, base) = (
-                ["base.acceleration", "contact.current"],
-                if n % 100 < 50 { 2000.0 } else { -2000.0 },
-            );
+            let base = if n % 100 < 50 { 2000.0 } else { -2000.0 };
+            let inputs = ["base.acceleration", "contact.current"];
             assert_eq!(contact.set_reals(inputs, [base, 0.1]), fmi2OK);
         };
         assert_eq!(allocations(&contact, 1e-5, begin), 0, "{name}");

@@ -27,15 +27,8 @@ fn compiled(source: &str) -> Command {
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}{EXE_SUFFIX}"));
     let compiler = Command::new("cc")
         // Rust rounds every operation; C may fuse a product and a sum, as clang does on Arm.
-        .args([
-            "-std=c99",
-            "-ffp-contract=off",
-            "-Wall",
-            "-Wextra",
-            "-Wpedantic",
-            "-Werror",
-            "-I",
-        ])
+        .args(["-std=c99", "-ffp-contract=off"])
+        .args(["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I"])
         .arg(env!("RELAY_CONTACT_INCLUDE"))
         .arg(source)
         .arg("-L")

@@ -68,10 +68,6 @@ fn pulling(mut scene: Scene) -> Scene {
     scene
 }
 
-fn generator(scene: &Scene) -> Generator {
-    Generator::new(scene)
-}
-
 /// Force, and the counted steps, after communication steps to these instants from 0 on.
 fn forces(scene: &Scene, times: &[f64], inputs: impl Fn(f64, f64) -> Inputs) -> (Vec<f64>, i32) {
     let mut simulation = Simulation::new(scene, &inputs(0.0, 1.0), 0.0).unwrap();
@@ -124,7 +120,7 @@ fn closed_form(scene: &Scene, time: f64) -> f64 {
             let angle = TAU * e.frequency * e.duration / r.ln() * (grown - 1.0);
             within(e.frequency * grown) * (angle + e.phase).sin()
         }
-        ExcitationKind::Random => generator(scene).acceleration(time),
+        ExcitationKind::Random => Generator::new(scene).acceleration(time),
         _ => 0.0,
     }
 }

@@ -3,12 +3,12 @@
 use std::f64::consts::{PI, TAU};
 use testing::close;
 
-use super::{equal_steps, forces, generator, random, undriven};
+use super::{Generator, equal_steps, forces, random, undriven};
 
 #[test]
 fn random_acceleration_has_the_power_asked_for() {
     let (low, high, density) = (20.0, 2000.0, 3.0);
-    let generator = generator(&random(0.0, low, high, density));
+    let generator = Generator::new(&random(0.0, low, high, density));
     let (rate, count) = (10_007.0, 100_000_u32);
     let time = f64::from(count) / rate;
     let power = (0..count)
@@ -35,7 +35,7 @@ fn random_acceleration_has_a_flat_spectrum_and_nothing_outside_its_band() {
     for seed in 0..seeds {
         let mut scene = random(0.0, low, high, density);
         scene.excitation.seed = seed;
-        let generator = generator(&scene);
+        let generator = Generator::new(&scene);
         let course: Vec<f64> = (0..count)
             .map(|k| window(k) * generator.acceleration(1.7 + f64::from(k) / rate))
             .collect();

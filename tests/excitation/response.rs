@@ -6,7 +6,7 @@ use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, Re
 use testing::scenes::{LAWS, accelerated, force_scale};
 
 use super::{
-    G, closed_form, equal_steps, every_waveform, forces, generator, half_sine, limited, random, sweep, undriven,
+    G, Generator, closed_form, equal_steps, every_waveform, forces, half_sine, limited, random, sweep, undriven,
 };
 
 /// The same course from outside, in straight pieces, is wrong by the square of their length.
@@ -19,7 +19,7 @@ fn waveforms_from_outside_converge_to_the_generators() {
         let every = equal_steps(1e-4, 30);
         let (exact, _) = forces(&scene, &every, undriven);
         // Where it jumps, what follows counts from there on.
-        let before = |time: f64| generator(&scene).acceleration_before(time);
+        let before = |time: f64| Generator::new(&scene).acceleration_before(time);
         let errors = [2_u32, 1].map(|size| {
             let course = |time: f64, end: f64| {
                 accelerated(

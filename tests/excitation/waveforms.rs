@@ -5,12 +5,12 @@ use testing::near;
 
 use relay_contact::variables::ExcitationKind;
 
-use super::{G, closed_form, every_waveform, excited, generator, half_sine, limited, phased, sweep};
+use super::{G, Generator, closed_form, every_waveform, excited, half_sine, limited, phased, sweep};
 
 #[test]
 fn waveforms_are_those_of_their_closed_forms() {
     for (name, scene) in every_waveform() {
-        let generator = generator(&scene);
+        let generator = Generator::new(&scene);
         let mut largest = 0.0_f64;
         for k in 0..3000 {
             let time = 1e-6 * (f64::from(k) + 0.5);
@@ -25,7 +25,7 @@ fn waveforms_are_those_of_their_closed_forms() {
 
 #[test]
 fn a_sweep_between_like_frequencies_is_the_sine() {
-    let sine = generator(&phased(excited(ExcitationKind::Sine, 0.0), 0.3));
+    let sine = Generator::new(&phased(excited(ExcitationKind::Sine, 0.0), 0.3));
     // Turns that the sweep is ahead: f tau (r - 1) tau / 2 D.
     for (end_frequency, part) in [
         (1000.0, 0.0),
@@ -33,7 +33,7 @@ fn a_sweep_between_like_frequencies_is_the_sine() {
         (1000.0 + 1e-9, 1e-12),
         (1000.0 - 1e-9, -1e-12),
     ] {
-        let near = generator(&phased(sweep(0.0, 1000.0, end_frequency, 1e9), 0.3));
+        let near = Generator::new(&phased(sweep(0.0, 1000.0, end_frequency, 1e9), 0.3));
         for tau in [0.0, 1e-4, 0.77, 1234.567, 1e6, 3.3e8 + 0.125] {
             let ahead = TAU * 1000.0 * tau * part * tau / 2e9;
             let difference = (near.acceleration(tau) - sine.acceleration(tau)).abs();
@@ -50,11 +50,11 @@ fn the_displacement_limit_crosses_over_where_the_standard_does() {
     let limit = 0.5 * 0.06 * 0.0254;
     let mut scene = limited(sweep(0.0, 10.0, 500.0, 450.0), limit);
     scene.excitation.amplitude = 10.0 * G;
-    let crossover = generator(&scene).next_break(0.0).unwrap();
+    let crossover = Generator::new(&scene).next_break(0.0).unwrap();
     let frequency = 10.0 * 50_f64.powf(crossover / 450.0);
     assert!((frequency - 57.10).abs() < 0.005, "{frequency}");
     // Up to there the displacement amplitude is the limit, from there on the acceleration is the amplitude.
-    let generator = generator(&scene);
+    let generator = Generator::new(&scene);
     for (time, expected) in [(20.0, None), (crossover - 2.0, None), (crossover + 2.0, Some(10.0 * G))] {
         let frequency = 10.0 * 50_f64.powf(time / 450.0);
         let course = (0..2000).map(|k| generator.acceleration(time + f64::from(k) * 1e-3 / frequency));
@@ -70,7 +70,7 @@ fn the_displacement_limit_crosses_over_where_the_standard_does() {
 #[test]
 fn a_shock_changes_the_velocity_as_the_standard_says() {
     // MIL-STD-202 method 213 condition A: 50 g, 11 ms, half sine.
-    let generator = generator(&half_sine(0.02, 50.0 * G, 0.011));
+    let generator = Generator::new(&half_sine(0.02, 50.0 * G, 0.011));
     let size = 1e-6;
     let change: f64 = (0..50_000)
         .map(|k| size * generator.acceleration(size * (f64::from(k) + 0.5)))
