@@ -74,37 +74,24 @@ fn tie_knots(relay: &mut Relay, rng: &mut Rng) {
     };
     // Knots are this many communication steps apart at most.
     let widest = rng.u32(1..=12);
-    let (size, count) = relay.steps;
+    let (_, count) = relay.steps;
     while relay.knots.len() < count as usize {
-        let last = relay
-            .knots
-            .last()
-            .map_or(Inputs::default(), |inputs| after(inputs, size));
         let first = relay.knots.is_empty();
         let jumps = if first { rng.bool() } else { rng.u8(..5) == 0 };
-        let start = if jumps {
-            uniform(rng, -acceleration, acceleration)
-        } else {
-            last.base_acceleration
-        };
+        let jump = jumps.then(|| uniform(rng, -acceleration, acceleration));
         let steps = rng.u32(1..=widest);
         let to = (uniform(rng, -acceleration, acceleration), uniform(rng, -way, way));
-        lead(
-            relay,
-            Inputs {
-                base_acceleration: start,
-                ..last
-            },
-            to,
-            steps,
-        );
+        lead(relay, jump, to, steps);
     }
 }
 
-/// Inputs that lead from these in a number of communication steps to a base acceleration (m/s2) and a displacement of the
-/// fixed contact (m), at most at 0.5 m/s.
-fn lead(relay: &mut Relay, from: Inputs, (acceleration, displacement): (f64, f64), steps: u32) {
+/// Inputs that lead from the last ones, or from a `jump` of the base acceleration to this value (m/s2), in a number of communication
+/// steps to a base acceleration (m/s2) and a displacement of the fixed contact (m), at most at 0.5 m/s.
+fn lead(relay: &mut Relay, jump: Option<f64>, (acceleration, displacement): (f64, f64), steps: u32) {
     let (size, _) = relay.steps;
+    let mut from = relay.knots.last().copied().unwrap_or_default();
+    from = after(&from, size);
+    from.base_acceleration = jump.unwrap_or(from.base_acceleration);
     let duration = f64::from(steps) * size;
     let rate = (displacement - from.support_displacement) / duration;
     let first = Inputs {
@@ -191,11 +178,7 @@ pub fn closing(number: u64) -> Relay {
         count / 2,
     ];
     for (steps, to) in parts.into_iter().zip([0.0, way, way]) {
-        let from = relay
-            .knots
-            .last()
-            .map_or(Inputs::default(), |inputs| after(inputs, size));
-        lead(&mut relay, from, (0.0, to), steps);
+        lead(&mut relay, None, (0.0, to), steps);
     }
     relay.steps.1 = parts.into_iter().sum();
     relay
@@ -257,8 +240,7 @@ pub fn rough(number: u64) -> Relay {
     };
     let rng = &mut Rng::with_seed(number.rotate_left(32));
     let scene = &mut relay.scene;
-    let bending = scene.beam.youngs_modulus * scene.beam.width * scene.beam.thickness.powi(3) / 12.0;
-    let tip = 3.0 * bending / scene.beam.length.powi(3);
+    let tip = tip_stiffness(scene);
     let contact = &mut scene.contact;
     contact.stiffness_force = tip * contact.overtravel.abs();
     contact.stiffness = tip * logarithmic(rng, 10.0, 1e4);
