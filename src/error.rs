@@ -8,6 +8,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages tell what the fields are")]
 pub enum SceneError {
+    /// A value outside its range, or not a number.
     #[error("{name} = {}{}: not allowed, {allowed}", number(*value), spaced(unit))]
     OutOfRange {
         name: &'static str,
@@ -15,12 +16,14 @@ pub enum SceneError {
         unit: &'static str,
         allowed: String,
     },
+    /// A choice that the enumeration does not have.
     #[error("{name} = {value}: no such choice, allowed are {allowed}")]
     UnknownChoice {
         name: &'static str,
         value: String,
         allowed: String,
     },
+    /// A name that no variable of the expected kind has.
     #[error("{name}: no such {what}; similar: {nearest}")]
     UnknownName {
         name: String,
@@ -30,8 +33,10 @@ pub enum SceneError {
     /// Brackets inside each other that are more than a file may have.
     #[error("brackets inside each other: not allowed, allowed are {0}")]
     Nested(usize),
+    /// Less memory than a simulation takes.
     #[error("out of memory: {0} bytes are needed, and the system does not give them")]
     Memory(usize),
+    /// A value of the wrong type.
     #[error("{name} = {value}: wrong type, allowed is {allowed}")]
     WrongType {
         name: String,
@@ -44,6 +49,7 @@ pub enum SceneError {
         number(*value), number(*limit)
     )]
     Buckled { name: &'static str, value: f64, limit: f64 },
+    /// Two things that cannot be combined.
     #[error("{choice}: not allowed with {other}, allowed is {allowed}; or {instead}")]
     NotTogether {
         choice: String,
@@ -70,15 +76,19 @@ pub enum SceneError {
         number(*gap), number(*displacement), number(*least)
     )]
     NoGap { gap: f64, displacement: f64, least: f64 },
+    /// A linear contact law without a contact force to linearise about.
     #[error("effects.contactLaw: Linearised and Bonded need a contact that is closed at rest, preload.force is 0 N")]
     NoPreload,
     /// A scene for which a quantity of the model is not finite.
     #[error("{name} is {} for this scene: this combination of parameters is too extreme", number(*value))]
     NotFinite { name: &'static str, value: f64 },
+    /// A scene file that lacks a key.
     #[error("{name}: missing; expected {allowed}")]
     MissingKey { name: &'static str, allowed: &'static str },
+    /// A name given twice.
     #[error("{name}: given twice, allowed is {allowed}")]
     GivenTwice { name: String, allowed: &'static str },
+    /// A key that a file does not have.
     #[error("{name}: no such key, allowed are {allowed}{}", meant(*nearest))]
     UnknownKey {
         name: String,
@@ -103,6 +113,7 @@ pub enum SceneError {
     /// Any of these, with its line of the scene file or table.
     #[error("line {line}: {error}")]
     AtLine { line: usize, error: Box<SceneError> },
+    /// A file that is not TOML.
     #[error("not TOML: {0}")]
     Toml(String),
     /// A table of inputs that is not CSV, or has no rows.
@@ -111,6 +122,7 @@ pub enum SceneError {
     /// Any of these, with the file it is in.
     #[error("{}", in_file(file, error))]
     InFile { file: String, error: Box<SceneError> },
+    /// A file that cannot be read.
     #[error("{file}: cannot be read: {cause}")]
     Unreadable { file: String, cause: String },
 }
@@ -264,6 +276,7 @@ pub struct StepError {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages tell what the fields are")]
 pub enum StepErrorCause {
+    /// A step size that is not a positive finite number.
     #[error("the communication step size must be positive and finite")]
     StepSize,
     /// More integration steps than allowed within a communication step.
@@ -278,6 +291,7 @@ pub enum StepErrorCause {
     /// Two fixed contacts that touch.
     #[error("second.displacement = {} m brings the second fixed contact to the first, allowed is less than {} m", number(*displacement), number(*limit))]
     NoRoom { displacement: f64, limit: f64 },
+    /// A number in the state is no longer finite.
     #[error("the state is no longer finite")]
     NotFinite,
 }

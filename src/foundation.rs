@@ -47,8 +47,7 @@ impl Model {
         let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
         let preload = Preload::new(scene, &springs, (&power, parallel.as_ref()), initial)?;
         let tolerance = scene.solver.effective_tolerance();
-        // Of the springs bent by the overtravel, at least by 0.1 mm: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
-        let bending_force = springs.stiffness() * scene.contact.overtravel.abs().max(1e-4);
+        let bending_force = bending_force(scene, &springs);
         let force_scale = preload.force.max(bending_force);
         let other = |power: Power| Law::Power(power).parting(tolerance, force_scale);
         let laws = Laws {
@@ -175,6 +174,11 @@ fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
         contact_damping: power.damping,
         steep: scene.rubs() || power.exponent < 1.4,
     }
+}
+
+/// Force of the springs bent by the overtravel, at least by 0.1 mm, N: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
+fn bending_force(scene: &Scene, springs: &Springs) -> f64 {
+    springs.stiffness() * scene.contact.overtravel.abs().max(1e-4)
 }
 
 /// Force at the held tip per base acceleration that varies slowly, kg.

@@ -40,8 +40,7 @@ impl Inputs {
         Ok(())
     }
 
-    /// Rate of an input, in its unit per second.
-    pub fn rate(&self, input: RealInput) -> f64 {
+    fn rate(&self, input: RealInput) -> f64 {
         let mut inputs = *self;
         *inputs.course_mut(input).1
     }

@@ -37,15 +37,19 @@ pub struct Simulation {
 /// Keeps what simulations find of springs, slip and steps for the next ones, also while there is none.
 #[derive(Clone, Debug)]
 pub struct Kept {
-    _models: (Shared<spring::Known>, Shared<slip_stability::Known>),
-    _steps: (Shared<Left<SHORT>>, Shared<Left<LONG>>),
+    _springs: Shared<spring::Known>,
+    _slip: Shared<slip_stability::Known>,
+    _short: Shared<Left<SHORT>>,
+    _long: Shared<Left<LONG>>,
 }
 
 impl Default for Kept {
     fn default() -> Self {
         Self {
-            _models: (Shared::of(&spring::KNOWN), Shared::of(&slip_stability::KNOWN)),
-            _steps: (Shared::of(&OF_SHORT), Shared::of(&OF_LONG)),
+            _springs: Shared::of(&spring::KNOWN),
+            _slip: Shared::of(&slip_stability::KNOWN),
+            _short: Shared::of(&OF_SHORT),
+            _long: Shared::of(&OF_LONG),
         }
     }
 }

@@ -269,25 +269,35 @@ mod tests {
             let count = 1 + case % 12;
             let damped = 10_f64.powf(-6.0 + 5.0 * random());
             let (mut omega, by_mass) = (10_f64.powf(3.0 + random()), 10.0 * random());
-            let mode = |_| {
-                omega *= 1.01 + 2.0 * random() * random();
-                let is_damped = f64::from(u8::from(random() >= 0.02));
-                Mode {
-                    omega_squared: omega * omega,
-                    damping: is_damped * (by_mass + damped * omega * omega * 1e-3),
-                    tip: 20.0 * (random() - 0.5),
-                    ..Mode::default()
-                }
-            };
-            let modes: Vec<Mode> = (0..count).map(mode).collect();
+            let modes: Vec<Mode> = (0..count)
+                .map(|_| {
+                    omega *= 1.01 + 2.0 * random() * random();
+                    Mode {
+                        omega_squared: omega * omega,
+                        damping: if random() < 0.02 {
+                            0.0
+                        } else {
+                            by_mass + damped * omega * omega * 1e-3
+                        },
+                        tip: 20.0 * (random() - 0.5),
+                        ..Mode::default()
+                    }
+                })
+                .collect();
             let against = random();
-            let load = |mode: &Mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5);
-            let loads = DVector::from_iterator(count, modes.iter().map(load));
-            let damped = f64::from(u8::from(case % 3 > 0));
+            let loads = modes
+                .iter()
+                .map(|mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5));
+            let loads = DVector::from_vec(loads.collect::<Vec<f64>>());
+            let damping = if case % 3 == 0 {
+                0.0
+            } else {
+                10_f64.powf(-8.0 + 4.0 * random())
+            };
             let law = Power {
-                damping: damped * 10_f64.powf(-8.0 + 4.0 * random()),
                 coefficient: 10_f64.powf(8.0 + 3.0 * random()),
                 exponent: HERTZ,
+                damping,
                 traces: 0.0,
                 least: 0.0,
             };

@@ -62,9 +62,9 @@ def lowest_frequency(start: dict[str, float], contact: float, turning: float) ->
         return float(np.linalg.det([bending * curvature + turning * slope, bending * shear - held * w]))
 
     high = 0.1
-    while determinant(high) * determinant(high + 0.1) > 0:
-        high += 0.1
-    root: float = brentq(determinant, high, high + 0.1, xtol=1e-14)
+    while determinant(high) * determinant(high + 0.01) > 0:
+        high += 0.01
+    root: float = brentq(determinant, high, high + 0.01, xtol=1e-14)
     return (root / length) ** 2 * math.sqrt(bending / line) / (2 * math.pi)
 
 

@@ -90,16 +90,16 @@ impl<'a> Mesh<'a> {
             shear += force;
             moment += couple;
             let (half, rule) = (stretch.half, &self.rule);
-            let from_nodes = |values: &[f64], beyond: f64| -> Vec<f64> {
+            // What the load beyond each node makes there, and beyond the start.
+            let summed = |values: &[f64], beyond: f64| -> (Vec<f64>, f64) {
                 let whole = rule.integral(values);
-                rule.integrals(values)
-                    .map(|sum| beyond + half * (whole - sum))
-                    .collect()
+                let at_nodes = rule.integrals(values).map(|sum| beyond + half * (whole - sum));
+                (at_nodes.collect(), beyond + half * whole)
             };
-            let shears = from_nodes(density, shear);
-            parts.push(from_nodes(&shears, moment));
-            shear += half * rule.integral(density);
-            moment += half * rule.integral(&shears);
+            let (shears, moments);
+            (shears, shear) = summed(density, shear);
+            (moments, moment) = summed(&shears, moment);
+            parts.push(moments);
         }
         parts.reverse();
         self.bent(moment, parts.concat())

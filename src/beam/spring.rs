@@ -103,8 +103,10 @@ impl Spring {
 
     /// Axial force at a deflection of the tip (m), N.
     pub fn axial_force(&self, scene: &Scene, y: f64) -> f64 {
+        if self.given().is_some() {
+            return 0.0;
+        }
         match scene.effects.axial_force {
-            _ if self.given().is_some() => 0.0,
             AxialForceKind::None => 0.0,
             AxialForceKind::Prescribed => scene.beam.axial_force,
             AxialForceKind::FromPreload | AxialForceKind::FromDeflection => {

@@ -54,7 +54,7 @@ impl<const S: usize> Whole<'_, S> {
         let links = model.links.iter().zip(&state.links).zip(&trial.links);
         let closed = links.filter(|((_, at), _)| at.closed);
         let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &collocation.places, &nodes.forces));
-        // What fades faster than the nodes follow is at the start only.
+        // After a bend what is missed fades faster than the nodes follow: such terms do not decay.
         let bent = drive.has_just_changed(state.time, length);
         let missed = if bent { trial.start_defect } else { trial.next_terms };
         let error = trial.inner_error.lasting.max(BETWEEN_NODES * missed);

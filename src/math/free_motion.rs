@@ -113,7 +113,11 @@ impl FreeMotion {
         // Where the difference of exponentials needs care, or the quotient of sine and angle.
         let is_easy = |i: usize| {
             let angle = split[i] * times[i];
-            angle > if creeps[i] { 0.25 } else { 0.0 } && (creeps[i] || angle < LARGEST_ANGLE)
+            if creeps[i] {
+                angle > 0.25
+            } else {
+                angle > 0.0 && angle < LARGEST_ANGLE
+            }
         };
         if !(0..N).all(is_easy) {
             return array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i]));

@@ -35,7 +35,10 @@ impl Solver {
 
     /// The effective tolerance.
     pub fn effective_tolerance(&self) -> f64 {
-        let own = Some(self.tolerance).filter(|tolerance| *tolerance > 0.0);
-        own.map_or(Self::DEFAULT_TOLERANCE, |own| own.max(Self::TOLERANCE_FLOOR))
+        if self.tolerance > 0.0 {
+            self.tolerance.max(Self::TOLERANCE_FLOOR)
+        } else {
+            Self::DEFAULT_TOLERANCE
+        }
     }
 }

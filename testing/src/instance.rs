@@ -6,7 +6,7 @@ use std::ptr;
 use relay_contact::fmi2::*;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::variables::{GUID, Group, RealInput, VARIABLES, Variable};
+use relay_contact::variables::{GUID, Group, VARIABLES, Variable};
 
 use crate::log::{self, Log, Message, callbacks};
 
@@ -189,16 +189,25 @@ impl Instance {
 
     /// Sets the inputs with their derivatives.
     pub fn set_inputs(&self, inputs: &Inputs) {
-        for input in RealInput::ALL {
-            let name = input.variable().name;
-            assert_eq!(self.set_real(name, inputs.real(*input)), fmi2OK, "{:?}", self.log);
-            assert_eq!(
-                self.set_rates([name], [1], [inputs.rate(*input)]),
-                fmi2OK,
-                "{:?}",
-                self.log
-            );
-        }
+        let names = [
+            "base.acceleration",
+            "support.displacement",
+            "second.displacement",
+            "pusher.displacement",
+            "contact.current",
+            "coil.relativeCurrent",
+        ];
+        let courses = [
+            (inputs.base_acceleration, inputs.base_acceleration_rate),
+            (inputs.support_displacement, inputs.support_displacement_rate),
+            (inputs.second_displacement, inputs.second_displacement_rate),
+            (inputs.pusher_displacement, inputs.pusher_displacement_rate),
+            (inputs.contact_current, inputs.contact_current_rate),
+            (inputs.coil_relative_current, inputs.coil_relative_current_rate),
+        ];
+        let (values, rates) = (courses.map(|(value, _)| value), courses.map(|(_, rate)| rate));
+        assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
+        assert_eq!(self.set_rates(names, [1; 6], rates), fmi2OK, "{:?}", self.log);
     }
 
     /// `fmi2SetRealInputDerivatives`, of these orders.

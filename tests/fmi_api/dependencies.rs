@@ -131,7 +131,7 @@ fn values(text: &'static str) -> impl Iterator<Item = (&'static str, f64)> {
 }
 
 /// What is known at initialisation.
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 struct Known {
     scene: Scene,
     inputs: Inputs,
@@ -255,10 +255,9 @@ fn moved_in(scenes: impl Iterator<Item = Values>) -> Pairs {
         for known in &VARIABLES {
             for other in base.others(known) {
                 let mut changed = base.clone();
-                if changed.set(known, other).is_err() || changed == base {
+                let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else {
                     continue;
-                }
-                let Some(after) = changed.unknowns() else { continue };
+                };
                 let moved = before.iter().filter(|(name, bits)| after[*name] != **bits);
                 found.extend(moved.map(|(unknown, _)| (*unknown, known.name)));
             }

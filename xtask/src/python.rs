@@ -40,7 +40,7 @@ pub fn prepare() -> Result<()> {
         return Ok(());
     }
     let python3 = system_python()?;
-    println!("creating .venv (Python packages of requirements.txt): some minutes the first time");
+    println!("creating .venv (Python packages of requirements.txt): a minute the first time");
     output(command(python3).args(["-m", "venv", "--clear", ".venv"]))?;
     install_packages(&["-r", "requirements.txt"], &required)?;
     // The project's own package is used from its folder.
@@ -60,7 +60,10 @@ fn install_packages(packages: &[&str], required: &str) -> Result<()> {
     let uv = required.lines().find(|line| line.starts_with("uv=="));
     by_pip(&[uv.context("requirements.txt does not pin uv")?])?;
     let by_uv = output(python().args(["-m", "uv", "pip", "install", "--quiet"]).args(packages));
-    by_uv.or_else(|_| by_pip(packages))?;
+    if let Err(error) = by_uv {
+        println!("uv cannot install them, pip does: {error:#}");
+        by_pip(packages)?;
+    }
     Ok(())
 }
 
