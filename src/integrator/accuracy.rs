@@ -3,7 +3,7 @@
 use crate::integrator::collocation::error::of_rounding;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::shapes::Variable;
-use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING, UNSEEN_TERMS};
+use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING};
 use crate::link::CONTACT;
 use crate::math::nodal::{Nodal, end, greatest};
 use crate::math::prediction::value_and_slope;
@@ -32,10 +32,10 @@ impl<const S: usize> Whole<'_, S> {
             let steepest = 0.5 / self.collocation.places.first().copied().unwrap_or(1.0);
             let rounding = of_rounding::<S>(self.model, self.state, trial, FREE_ROUNDING * steepest);
             (trial.next_terms - rounding).max(0.0) / allowed
-        } else if UNSEEN_TERMS * trial.next_terms > allowed {
-            // Only rejects: a length chosen by it would be too short by a twentieth.
-            UNSEEN_TERMS * trial.next_terms / allowed
+        } else if trial.next_terms > allowed {
+            trial.next_terms / allowed
         } else {
+            // Next terms only reject: a length chosen by them would be too short by a twentieth.
             trial.start_defect / allowed
         }
     }
@@ -54,10 +54,13 @@ impl<const S: usize> Whole<'_, S> {
         let links = model.links.iter().zip(&state.links).zip(&trial.links);
         let closed = links.filter(|((_, at), _)| at.closed);
         let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &collocation.places, &nodes.forces));
-        // After a bend what is missed fades faster than the nodes follow: such terms do not decay.
         let bent = drive.has_just_changed(state.time, length);
-        let missed = if bent { trial.start_defect } else { trial.next_terms };
-        let error = trial.inner_error.lasting.max(BETWEEN_NODES * missed);
+        let missed = if bent {
+            FADED * trial.start_defect
+        } else {
+            BETWEEN_NODES * trial.next_terms
+        };
+        let error = trial.inner_error.lasting.max(missed);
         error.min(swings.fold(0.0, f64::max))
     }
 
@@ -95,6 +98,10 @@ impl<const S: usize> Whole<'_, S> {
 /// term misses at the start, 1: greatest value of `x prod (1 - x / c_k)`.
 const BETWEEN_NODES: f64 = 0.155;
 
+/// The same beyond the first node after a bend, 1: what has faded up to there has terms that do not decay. Greatest value of
+/// `prod (1 - x / c_k)` there.
+const FADED: f64 = 0.386;
+
 /// How far a force that rises and falls from `start` (N) over the nodes of a step is from where it turns, N; 0 of one that does not.
 /// It turns where a parabola through three neighbours does, which may be beyond all of them.
 fn swing<const S: usize>(start: f64, places: &Nodal<S>, forces: &Nodal<S>) -> f64 {
@@ -124,15 +131,17 @@ mod tests {
     use crate::integrator::collocation::polynomial::SHORT_BY_TIME;
 
     #[test]
-    fn the_shape_between_the_nodes_of_short_steps_has_its_greatest_value() {
-        let shape = |x: f64| {
-            SHORT_BY_TIME
-                .nodes
-                .iter()
-                .fold(x, |value, node| value * (1.0 - x / node))
+    fn the_shapes_between_the_nodes_of_short_steps_have_their_greatest_values() {
+        let nodes = SHORT_BY_TIME.nodes;
+        let faded = |x: f64| nodes.iter().map(|node| 1.0 - x / node).product::<f64>();
+        let most = |shape: &dyn Fn(f64) -> f64, from: f64| {
+            let places = (0..1000).map(|k| 1e-3 * f64::from(k)).filter(|x| *x > from);
+            places.map(|x| shape(x).abs()).fold(0.0, f64::max)
         };
-        let most = (0..1000).map(|k| shape(1e-3 * f64::from(k)).abs()).fold(0.0, f64::max);
-        assert!((most / BETWEEN_NODES - 1.0).abs() < 0.01, "{most}");
+        let between = most(&|x| x * faded(x), 0.0);
+        assert!((between / BETWEEN_NODES - 1.0).abs() < 0.01, "{between}");
+        let beyond_first = most(&faded, nodes[0]);
+        assert!((beyond_first / FADED - 1.0).abs() < 0.01, "{beyond_first}");
     }
 
     /// Between its last two nodes this one lies lower than at any of them.

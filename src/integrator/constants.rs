@@ -60,11 +60,6 @@ pub const COARSEST: f64 = 0.1;
 /// Pinned: 0, `tests/promise.rs`.
 pub const SLOWEST_DECAY: f64 = 1.0 / 3.0;
 
-/// Factor on the terms that are extrapolated, for what is read inside a step, 1: what is missed at the start, a few samples, may be a
-/// quarter of what is missed elsewhere. Observed on springs that ring on, with two samples. Not pinned: with three, the
-/// relays that it was found by keep their tolerance without it (÷ 4).
-pub const UNSEEN_TERMS: f64 = 4.0;
-
 /// Mean over a step of what the nodal polynomial misses of the square root of time from its start, over what it misses
 /// at the start, 1. From the quadrature of the root. Pinned: ÷ 1000, `tests/chatter.rs` (interruptions of
 /// microseconds).
