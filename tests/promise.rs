@@ -1,6 +1,6 @@
 //! The promise of `solver.tolerance` on random plausible relays ([`testing::relays`]): contact force and extremes are right
 //! to the tolerance, relative to the larger of the force scale and the largest force so far. The reference is the same
-//! relay at a thousandth of its tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
+//! relay at a hundredth of its tolerance with the most modes. `cargo run --release --package benches --bin promise` judges 2,000
 //! others, at the tightest tolerance.
 
 use relay_contact::scene::{Scene, Solver};
@@ -17,9 +17,9 @@ type Draw = fn(u64) -> Relay;
 /// Relays judged of each kind.
 const COUNT: u64 = 40;
 
-/// Tolerance of a reference over that of its relay: at the tightest one it is the same to a thousandth of the tolerance, but a few
-/// relays take a hundred times as long.
-const PART: f64 = 1e-3;
+/// Tolerance of a reference over that of its relay: where the promise holds errors are known to a hundredth of the tolerance. A few
+/// relays take a hundred times as long at the tightest one.
+const PART: f64 = 1e-2;
 
 #[test]
 fn relays_keep_their_tolerance_or_say_that_they_may_not() {

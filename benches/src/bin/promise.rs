@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Parser;
+use clap::builder::PossibleValuesParser;
 use testing::kinds::{self, KINDS};
 use testing::promise::{Judged, Outcome, compare_all, judge_each};
 
@@ -23,7 +24,7 @@ struct Arguments {
     #[arg(long, default_value_t = 2_000)]
     count: u64,
     /// Which relays; of one kind only those above their tolerance are printed, and nothing is written
-    #[arg(long)]
+    #[arg(long, value_parser = PossibleValuesParser::new(KINDS.iter().map(|kind| kind.0)))]
     kind: Option<String>,
     /// Compare references with themselves in communication steps of a quarter, and print those that disagree without a word
     #[arg(long)]
@@ -54,8 +55,10 @@ fn main() -> Result<()> {
         println!("{run} run; of those that keep their tolerance {alarms} are announced as above it");
         return Ok(());
     }
-    fs::create_dir_all(&arguments.folder)?;
-    let mut table = File::create(arguments.folder.join("promise.csv"))?;
+    let path = arguments.folder.join("promise.csv");
+    let mut table = fs::create_dir_all(&arguments.folder)
+        .and_then(|()| File::create(&path))
+        .with_context(|| format!("cannot write {}", path.display()))?;
     writeln!(
         table,
         "relay,kind,damping,opens,tolerance,error,instants,estimate,outcome"
