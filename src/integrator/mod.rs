@@ -158,8 +158,9 @@
 //! *Rest* ([`rest`]): under constant inputs, the energy above the equilibrium bounds the force that is still to come. Where that bound
 //! is below [`constants::UNREST`] of the tolerance nothing is integrated until something changes.
 //!
-//! *Discrete gradient* ([`discrete_gradient`]): where Newton's method or the error estimate fails repeatedly, and at the shortest step,
-//! each force is taken constant over the step. That always has a solution, and makes no energy at any step length. Order two.
+//! *Discrete gradient* ([`discrete_gradient`]): where Newton's method still fails at the shortest step, or after
+//! [`constants::HALVINGS`] rejections, each force is taken constant over the step. That always has a solution, and makes no energy at
+//! any step length. Order two.
 //!
 //! *Energy* ([`energy`]): where nothing dissipates, what a step makes of energy is its error, and is returned by small impulses within
 //! a share of the tolerance. `energy.balance` is the work of the forces by which the polynomials miss the laws.

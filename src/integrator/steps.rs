@@ -104,13 +104,15 @@ impl Stepper<'_> {
         Workspace: Rooms<S>,
     {
         let [ratio, own] = self.judge(trial, target);
-        // One of the shortest length is accepted with any finite error.
-        if !(own <= 1.0 || self.is_shortest(target) && own.is_finite()) {
-            // The collocation failed; use the discrete-gradient step.
-            if self.state.is_closed() && (self.is_shortest(target) || self.progress.refusals >= HALVINGS) {
+        let closed = self.state.is_closed();
+        let is_least = self.is_shortest(target) || closed && self.progress.refusals >= HALVINGS;
+        // One that cannot be shorter is accepted with any finite error: what does not shrink with it is rounding.
+        if !(own <= 1.0 || is_least && own.is_finite()) {
+            if is_least && closed {
+                // The collocation failed; use the discrete-gradient step.
                 return self.take_with_constant_force(target);
             }
-            if self.is_shortest(target) {
+            if is_least {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
             let shrink = if self.changes_now() {
@@ -122,7 +124,7 @@ impl Stepper<'_> {
             return Ok(self.reject(target.length * shrink));
         }
         // The energy may reveal an error that the estimate misses.
-        let watches = self.progress.conserves && self.state.is_closed();
+        let watches = self.progress.conserves && closed;
         if watches && !self.is_shortest(target) && conservation::is_broken(self.whole(trial, target.length)) {
             return Ok(self.reject(0.5 * target.length));
         }
