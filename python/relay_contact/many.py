@@ -2,11 +2,13 @@
 
 import contextvars
 import os
+from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
+from threading import Event
 from typing import TYPE_CHECKING, TypeVar
 
 from relay_contact.component import KEPT, Component, Value, Values, units
@@ -46,32 +48,48 @@ def side_by_side(
     """Return what work makes of each item, in their order, by so many threads; those of all cores, if not given.
 
     Work within work shares them. Warnings of the component are kept in the order of the items. `tell` is called by
-    this thread whenever an item is done. An error ends it, once what runs is done.
+    this thread for each item, within a twentieth of a second after it is done. An error ends it, once what runs is
+    done.
     """
     workers = checked(workers)
     used = max(1, min(workers, len(items)))
     kept: list[dict[str, str]] = [{} for _ in items]
+    left, found = deque(enumerate(items)), dict[int, Found]()
+    ended = Event()
 
-    def own(item: Item, warnings: dict[str, str]) -> Found:
+    def own(index: int, item: Item) -> None:
         SHARE.set(max(1, workers // used))
         if KEPT.get() is not None:
-            KEPT.set(warnings)
-        return work(item)
+            KEPT.set(kept[index])
+        found[index] = work(item)
 
+    def take(context: contextvars.Context) -> None:
+        while not ended.is_set():
+            try:
+                index, item = left.popleft()
+            except IndexError:
+                return
+            context.copy().run(own, index, item)
+
+    # This thread rests meanwhile: woken after each item it would take the lock of the interpreter from the others.
     with ThreadPoolExecutor(used) as pool:
-        pairs = zip(items, kept, strict=True)
-        futures = [pool.submit(contextvars.copy_context().run, own, item, warnings) for item, warnings in pairs]
+        futures = [pool.submit(take, contextvars.copy_context()) for _ in range(used)]
+        told, running = 0, set(futures)
         try:
-            for future in as_completed(futures):
-                future.result()
-                tell()
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+            while running:
+                done, running = wait(futures, 0.05, FIRST_EXCEPTION)
+                for each in done:
+                    each.result()
+                finished = len(found)
+                for _ in range(finished - told):
+                    tell()
+                told = finished
+        finally:
+            ended.set()
     if (whole := KEPT.get()) is not None:
         for kind, message in (pair for each in kept for pair in each.items()):
             whole.setdefault(kind, message)
-    return [future.result() for future in futures]
+    return [found[index] for index in range(len(items))]
 
 
 def run_many(
