@@ -217,20 +217,33 @@ def test_work_within_work_shares_the_cores() -> None:
     assert cores() >= 1
 
 
-def test_an_error_of_own_work_ends_it() -> None:
+@pytest.mark.parametrize("kind", [RelayContactError, IndexError, StopIteration])
+def test_an_error_of_own_work_ends_it(kind: type[Exception]) -> None:
     begun: list[int] = []
 
     def work(item: int) -> None:
         begun.append(item)
         time.sleep(1e-3)
         if item == 3:
-            raise RelayContactError("the third")
+            raise kind("the third")
 
     for workers in (1, 2):
         begun.clear()
-        with pytest.raises(RelayContactError, match="the third"):
+        with pytest.raises(kind, match="the third"):
             side_by_side(work, range(1000), workers)
         assert len(begun) < 900
+
+
+def test_an_error_of_what_is_told_ends_it() -> None:
+    begun: list[int] = []
+
+    def work(item: int) -> None:
+        begun.append(item)
+        time.sleep(1e-2)
+
+    with pytest.raises(ZeroDivisionError):
+        side_by_side(work, range(1000), 2, lambda: 1 / 0)
+    assert 0 < len(begun) < 900
 
 
 def test_warnings_are_kept_in_the_order_of_the_items() -> None:

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::Parser;
-use clap::builder::PossibleValuesParser;
 use testing::kinds::{self, KINDS};
 use testing::promise::{Judged, Outcome, compare_all, judge_each};
+use testing::relays::Relay;
 
 #[derive(Parser)]
 #[command(about = "Judges random relays by the promise of solver.tolerance")]
@@ -24,19 +24,25 @@ struct Arguments {
     #[arg(long, default_value_t = 2_000)]
     count: u64,
     /// Which relays; of one kind only those above their tolerance are printed, and nothing is written
-    #[arg(long, value_parser = PossibleValuesParser::new(KINDS.iter().map(|kind| kind.0)))]
-    kind: Option<String>,
+    #[arg(long, value_parser = of_kind)]
+    kind: Option<fn(u64) -> Relay>,
     /// Compare references with themselves in communication steps of a quarter, and print those that disagree without a word
     #[arg(long)]
     quarters: bool,
 }
 
+/// Draws relays of the kind of a name.
+fn of_kind(name: &str) -> Result<fn(u64) -> Relay> {
+    let found = KINDS.iter().find(|(kind, ..)| *kind == name);
+    let allowed = || KINDS.map(|(kind, ..)| kind).join(", ");
+    Ok(found
+        .with_context(|| format!("no such kind, allowed are {}", allowed()))?
+        .2)
+}
+
 fn main() -> Result<()> {
     let arguments = Arguments::parse();
-    let draw = match &arguments.kind {
-        None => kinds::any,
-        Some(kind) => KINDS.iter().find(|(name, ..)| name == kind).context("no such kind")?.2,
-    };
+    let draw = arguments.kind.unwrap_or(kinds::any);
     if arguments.quarters {
         let compared = compare_all(arguments.first, arguments.count, draw);
         let silent = compared.iter().filter(|compared| compared.is_silent());
