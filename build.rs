@@ -197,11 +197,7 @@ fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Bo
     let (mut from, mut table) = (String::new(), String::new());
     for item in list.children().filter(Node::is_element) {
         let (label, value) = (attribute(item, "name")?, attribute(item, "value")?);
-        writeln!(
-            code,
-            "    /// {}.\n    {label} = {value},",
-            attribute(item, "description")?
-        )?;
+        writeln!(code, "    /// {}.\n    {label} = {value},", attribute(item, "description")?)?;
         writeln!(from, "            {value} => Some(Self::{label}),")?;
         write!(table, "({label:?}, {value}), ")?;
     }
@@ -214,8 +210,7 @@ fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Bo
 }
 
 fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, String> {
-    node.attribute(name)
-        .ok_or_else(|| format!("{:?} has no attribute {name}", node.tag_name().name()))
+    node.attribute(name).ok_or_else(|| format!("{:?} has no attribute {name}", node.tag_name().name()))
 }
 
 /// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
@@ -254,9 +249,7 @@ fn header(out: &Path, constants: &str) -> Result<(), Box<dyn Error>> {
     let sources = ["types", "common", "values", "fmu_state", "co_simulation", "course"];
     sources
         .iter()
-        .fold(cbindgen::Builder::new(), |builder, source| {
-            builder.with_src(format!("src/fmi2/{source}.rs"))
-        })
+        .fold(cbindgen::Builder::new(), |builder, source| builder.with_src(format!("src/fmi2/{source}.rs")))
         .with_language(cbindgen::Language::C)
         .with_no_includes()
         .with_sys_include("stddef.h")

@@ -25,11 +25,9 @@ pub fn all() -> String {
         "/// Most terms of a power series.\npub const TERMS: usize = {TERMS};\n\
          /// Terms of one below this are left out, 1.\npub const NEGLIGIBLE: f64 = {NEGLIGIBLE:?};\n"
     );
-    for (name, size, count, by_root) in [
-        ("SHORT_BY_TIME", "SHORT", 4, false),
-        ("LONG_BY_TIME", "LONG", 8, false),
-        ("LONG_BY_ROOT", "LONG", 8, true),
-    ] {
+    for (name, size, count, by_root) in
+        [("SHORT_BY_TIME", "SHORT", 4, false), ("LONG_BY_TIME", "LONG", 8, false), ("LONG_BY_ROOT", "LONG", 8, true)]
+    {
         let _ = write!(
             code,
             "/// Those of steps with {count} nodes.\n#[expect(clippy::unreadable_literal, reason = \"nobody reads them\")]\n\
@@ -142,10 +140,7 @@ impl Table {
     /// From the values by node and shape.
     fn of(count: usize, value: impl Fn(usize, usize) -> f64) -> Self {
         let column = |shape: usize| (0..count).map(|i| value(i, shape)).collect::<Vec<_>>();
-        Self {
-            nodal: (0..count).map(column).collect(),
-            error: column(count),
-        }
+        Self { nodal: (0..count).map(column).collect(), error: column(count) }
     }
 
     /// The Lagrange polynomials at the last node.

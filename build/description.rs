@@ -5,9 +5,7 @@ use roxmltree::{Document, Node};
 /// The definition of the type a value is declared as.
 pub fn declared<'a, 'input>(document: &'a Document<'input>, value: Node) -> Option<Node<'a, 'input>> {
     let declared = value.attribute("declaredType")?;
-    document
-        .descendants()
-        .find(|node| node.has_tag_name("SimpleType") && node.attribute("name") == Some(declared))
+    document.descendants().find(|node| node.has_tag_name("SimpleType") && node.attribute("name") == Some(declared))
 }
 
 /// The unit of a value, by the type it is declared as; empty where there is none.

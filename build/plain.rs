@@ -49,9 +49,7 @@ fn numbers<'a>(document: &'a Document, value: &Node) -> Vec<(&'a str, &'a str)> 
     if value.has_tag_name("Boolean") {
         return vec![("0", "false"), ("1", "true")];
     }
-    let items = declared(document, *value)
-        .into_iter()
-        .flat_map(|definition| definition.descendants());
+    let items = declared(document, *value).into_iter().flat_map(|definition| definition.descendants());
     let numbers = items.filter_map(|item| Some((item.attribute("value")?, item.attribute("name")?)));
     numbers.collect()
 }

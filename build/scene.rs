@@ -22,10 +22,7 @@ const GROUPS: [(&str, &str); 15] = [
     ("pusher", "Pusher between clamp and contact."),
     ("armature", "Armature that moves the pusher."),
     ("friction", "Friction between the contacts."),
-    (
-        "resistance",
-        "Contact resistance, in series with a film, both in parallel with the open resistance.",
-    ),
+    ("resistance", "Contact resistance, in series with a film, both in parallel with the open resistance."),
     ("excitation", "Generated base acceleration."),
     ("environment", "Surroundings."),
     ("chatter", "Criterion for interruptions."),
@@ -87,10 +84,7 @@ pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>>
         let variant = name.to_upper_camel_case();
         let Arms { read, write } = arms.entry(kind).or_default();
         if kind == "Enumeration" {
-            writeln!(
-                read,
-                "            EnumerationParameter::{variant} => self.{path} as i32,"
-            )?;
+            writeln!(read, "            EnumerationParameter::{variant} => self.{path} as i32,")?;
             writeln!(
                 write,
                 "            EnumerationParameter::{variant} => self.{path} = {rust}::from_value(value)?,"
@@ -152,11 +146,7 @@ fn structs(mut groups: BTreeMap<&str, Fields>) -> Result<String, Box<dyn Error>>
 /// Reading and writing by variable.
 fn access(code: &mut String, arms: &BTreeMap<&str, Arms>) -> Result<(), Box<dyn Error>> {
     writeln!(code, "impl Scene {{")?;
-    for (kind, rust, name) in [
-        ("Real", "f64", "real"),
-        ("Integer", "i32", "integer"),
-        ("Boolean", "bool", "boolean"),
-    ] {
+    for (kind, rust, name) in [("Real", "f64", "real"), ("Integer", "i32", "integer"), ("Boolean", "bool", "boolean")] {
         let Arms { read, write } = arms.get(kind).ok_or(format!("no {kind} parameters"))?;
         writeln!(
             code,
@@ -190,10 +180,7 @@ pub fn inputs(document: &Document, list: &Node) -> Result<String, Box<dyn Error>
         values.add(&doc(document, variable, value)?, &field, "f64", &start)?;
         let of = format!("Rate of `{name}` \\[{} per s\\]", unit(document, value));
         rates.add(&of, &format!("{field}_rate"), "f64", "0.0")?;
-        writeln!(
-            arms,
-            "            RealInput::{variant} => (&mut self.{field}, &mut self.{field}_rate),"
-        )?;
+        writeln!(arms, "            RealInput::{variant} => (&mut self.{field}, &mut self.{field}_rate),")?;
     }
     Ok(format!(
         "/// Values of the inputs and their rates. SI units. With rates of 0 the inputs are held, and displacements lag one step\n\

@@ -39,9 +39,7 @@ fn advance(contact: &mut Simulation, amplitude: f64, time: f64, size: f64) -> Re
     inputs.set_real(RealInput::BaseAcceleration, now)?;
     inputs.set_rate(RealInput::BaseAcceleration, (then - now) / size)?;
     // After an error the contact stands where the step began.
-    contact
-        .step(&inputs, time, size)
-        .map_err(|error: StepError| error.into())
+    contact.step(&inputs, time, size).map_err(|error: StepError| error.into())
 }
 
 /// Instants of the last opening and closing, s.
@@ -85,10 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     fs::create_dir_all(Path::new(path).parent().unwrap_or(Path::new("")))?;
     fs::write(path, table)?;
-    println!(
-        "interruptions of 5 us or more: {}",
-        contact.integer(IntegerOutput::ChatterCount)
-    );
+    println!("interruptions of 5 us or more: {}", contact.integer(IntegerOutput::ChatterCount));
     let longest = contact.real(RealOutput::ChatterLongestInterruption);
     println!("longest interruption: {:.3} us", 1e6 * longest);
     println!("steps done again: {repeated}");

@@ -38,9 +38,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (value, variable) in outputs.iter().zip(&scene.outputs) {
         println!("{} = {value} {}", variable.name, variable.unit);
     }
-    println!(
-        "{} ns per simulated millisecond",
-        1e6 * taken.as_secs_f64() / scene.stop
-    );
+    println!("{} ns per simulated millisecond", 1e6 * taken.as_secs_f64() / scene.stop);
     Ok(())
 }

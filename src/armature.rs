@@ -47,10 +47,7 @@ impl Armature {
         (scene.effects.pusher == PusherKind::Armature).then_some(Self {
             given,
             gravity: scene.environment.gravity,
-            magnet: Magnet {
-                hold: given.hold_force,
-                constant: given.gap_constant,
-            },
+            magnet: Magnet { hold: given.hold_force, constant: given.gap_constant },
         })
     }
 

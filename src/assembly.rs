@@ -63,10 +63,8 @@ impl Assembly {
         }
         if scene.fixed_spring.is_some() {
             let port = all.port(Port::new(modes, |mode| mode.fixed));
-            all.roles.fixed = Some(all.link(Link {
-                sense: -1.0,
-                ..Link::passive("fixed contact", LinkLaw::Gauge, port)
-            }));
+            all.roles.fixed =
+                Some(all.link(Link { sense: -1.0, ..Link::passive("fixed contact", LinkLaw::Gauge, port) }));
         }
         if let (Some(friction), Some(share)) = (Friction::new(scene, modes), friction::tangential_share(scene)) {
             let port = all.port(Port::new(modes, |mode| friction.height * mode.rotation));

@@ -76,21 +76,14 @@ impl Interruptions {
 
     /// Whether the values are consistent at an instant (s) (check of a deserialised state).
     pub fn is_sound(&self, time: f64) -> bool {
-        let Self {
-            in_progress: _,
-            turned,
-            completed,
-            made,
-        } = self;
+        let Self { in_progress: _, turned, completed, made } = self;
         turned.is_none_or(|instant| instant <= time && instant.is_finite()) && completed.is_sound() && made.is_sound()
     }
 
     /// Interruptions at an instant (s), including one in progress.
     pub fn summary(&self, criterion: &Criterion, time: f64) -> Summary {
         let now = self.turned.filter(|_| self.in_progress);
-        now.map_or(self.completed, |since| {
-            self.completed.with(time - since, criterion.minimum_duration)
-        })
+        now.map_or(self.completed, |since| self.completed.with(time - since, criterion.minimum_duration))
     }
 
     /// Makes at an instant (s), including one in progress.

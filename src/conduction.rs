@@ -27,12 +27,7 @@ impl<'a> Conducting<'a> {
         let spot = |(index, law): (usize, &ElectricalContact)| law.spot(motion.force(model, index));
         let spots = contacts.map(|contact| contact.map_or(0.0, spot));
         let (_, electrical) = own;
-        Some(Self {
-            electrical,
-            contacts,
-            spots,
-            conductance: electrical.beside(spots.iter().sum()),
-        })
+        Some(Self { electrical, contacts, spots, conductance: electrical.beside(spots.iter().sum()) })
     }
 
     /// Rates of the conductances of both spots, S/s.

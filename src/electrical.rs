@@ -38,19 +38,11 @@ impl ElectricalContact {
             ResistanceKind::Holm => (0.5 * resistance.resistivity * (PI * resistance.hardness).sqrt(), 0.5),
             ResistanceKind::Barber => {
                 let (stiffness, exponent) = law.stiffness_by_force();
-                (
-                    resistance.resistivity * reduced_modulus(&scene.contact) / stiffness,
-                    exponent,
-                )
+                (resistance.resistivity * reduced_modulus(&scene.contact) / stiffness, exponent)
             }
             ResistanceKind::None => return None,
         };
-        Some(Self {
-            coefficient,
-            exponent,
-            film: resistance.film,
-            open: resistance.open,
-        })
+        Some(Self { coefficient, exponent, film: resistance.film, open: resistance.open })
     }
 
     /// Resistance of the constriction at a force (N) above 0, Ohm.
@@ -70,11 +62,7 @@ impl ElectricalContact {
 
     /// Conductance of the spot at a force (N), with the film, S; 0 of an open contact.
     pub fn spot(&self, force: f64) -> f64 {
-        if force > 0.0 {
-            1.0 / (self.constriction(force) + self.film)
-        } else {
-            0.0
-        }
+        if force > 0.0 { 1.0 / (self.constriction(force) + self.film) } else { 0.0 }
     }
 
     /// Its derivative, S/N.
@@ -100,16 +88,10 @@ impl ElectricalContact {
         }
         if self.exponent == 0.0 {
             // A resistance that does not depend on the force: the contact is interrupted while it is open.
-            return if self.coefficient > constriction {
-                f64::INFINITY
-            } else {
-                f64::MIN_POSITIVE
-            };
+            return if self.coefficient > constriction { f64::INFINITY } else { f64::MIN_POSITIVE };
         }
         // At a small exponent, a force below all that can be told from none.
-        (self.coefficient / constriction)
-            .powf(1.0 / self.exponent)
-            .max(f64::MIN_POSITIVE)
+        (self.coefficient / constriction).powf(1.0 / self.exponent).max(f64::MIN_POSITIVE)
     }
 
     /// Temperature of the contact spot at a force (N) and a current (A), K: `T^2 = T_0^2 + V^2 / (4 L)` with the
@@ -137,10 +119,7 @@ impl ElectricalContact {
             return (0.0, 0.0);
         }
         let by_voltage = voltage / (4.0 * LORENZ * self.temperature(scene, force, current));
-        (
-            -by_voltage * current.abs() * self.exponent * constriction / force,
-            by_voltage * resistance,
-        )
+        (-by_voltage * current.abs() * self.exponent * constriction / force, by_voltage * resistance)
     }
 }
 

@@ -10,26 +10,13 @@ use std::ops::Range;
 pub enum SceneError {
     /// A value outside its range, or not a number.
     #[error("{name} = {}{}: not allowed, {allowed}", number(*value), spaced(unit))]
-    OutOfRange {
-        name: &'static str,
-        value: f64,
-        unit: &'static str,
-        allowed: String,
-    },
+    OutOfRange { name: &'static str, value: f64, unit: &'static str, allowed: String },
     /// A choice that the enumeration does not have.
     #[error("{name} = {value}: no such choice, allowed are {allowed}")]
-    UnknownChoice {
-        name: &'static str,
-        value: String,
-        allowed: String,
-    },
+    UnknownChoice { name: &'static str, value: String, allowed: String },
     /// A name that no variable of the expected kind has.
     #[error("{name}: no such {what}; similar: {nearest}")]
-    UnknownName {
-        name: String,
-        what: &'static str,
-        nearest: String,
-    },
+    UnknownName { name: String, what: &'static str, nearest: String },
     /// Brackets inside each other that are more than a file may have.
     #[error("brackets inside each other: not allowed, allowed are {0}")]
     Nested(usize),
@@ -38,11 +25,7 @@ pub enum SceneError {
     Memory(usize),
     /// A value of the wrong type.
     #[error("{name} = {value}: wrong type, allowed is {allowed}")]
-    WrongType {
-        name: String,
-        value: String,
-        allowed: &'static str,
-    },
+    WrongType { name: String, value: String, allowed: &'static str },
     /// An axial force above the buckling load of the spring without contact.
     #[error(
         "{name} = {} N: the spring buckles once the contact opens, allowed is less than {} N",
@@ -51,24 +34,14 @@ pub enum SceneError {
     Buckled { name: &'static str, value: f64, limit: f64 },
     /// Two things that cannot be combined.
     #[error("{choice}: not allowed with {other}, allowed is {allowed}; or {instead}")]
-    NotTogether {
-        choice: String,
-        allowed: &'static str,
-        other: String,
-        instead: &'static str,
-    },
+    NotTogether { choice: String, allowed: &'static str, other: String, instead: &'static str },
     /// Friction so strong that the contact jams as it closes: no preload with it at its limit.
     #[error(
         "friction.coefficient = {} with tip.contactHeight = {} m: the contact jams as it closes, allowed is a product of less \
          than {} m for friction.initial = {}",
         number(*coefficient), number(*height), number(*limit), number(*initial)
     )]
-    Jams {
-        coefficient: f64,
-        height: f64,
-        limit: f64,
-        initial: f64,
-    },
+    Jams { coefficient: f64, height: f64, limit: f64, initial: f64 },
     /// A second contact that the moving contact touches at the preload, or that touches the first.
     #[error(
         "second.gap = {} m with second.displacement = {} m: not allowed, what is left of the gap at the preload must be more \
@@ -90,23 +63,14 @@ pub enum SceneError {
     GivenTwice { name: String, allowed: &'static str },
     /// A key that a file does not have.
     #[error("{name}: no such key, allowed are {allowed}{}", meant(*nearest))]
-    UnknownKey {
-        name: String,
-        allowed: String,
-        nearest: Option<&'static str>,
-    },
+    UnknownKey { name: String, allowed: String, nearest: Option<&'static str> },
     /// Modes of a spring that are more compliant than the whole spring.
     #[error(
         "{name} = {} m/N: not allowed, allowed is {} m/N or more, which the modes hold alone (sum of {place}^2/omega^2); \
          modes and compliance contradict each other",
         number(*compliance), number(*held)
     )]
-    Contradiction {
-        name: &'static str,
-        compliance: f64,
-        place: &'static str,
-        held: f64,
-    },
+    Contradiction { name: &'static str, compliance: f64, place: &'static str, held: f64 },
     /// Any of these, with the entry of a list that it is in.
     #[error("{entry}: {error}")]
     InEntry { entry: String, error: Box<SceneError> },
@@ -133,45 +97,27 @@ pub enum SceneError {
 pub enum Remark {
     /// What describes another kind of spring, set beside a spring file.
     #[error("{name} = {}{}: not used, the spring is that of beam.file = {file}", number(*value), spaced(unit))]
-    NotUsed {
-        name: &'static str,
-        value: f64,
-        unit: &'static str,
-        file: String,
-    },
+    NotUsed { name: &'static str, value: f64, unit: &'static str, file: String },
     /// A spring that forks, and does not in the scene.
     #[error(
         "{name} = {file}: fork_position = {} m: not used, both tongues move as one; only those of beam.file with \
          effects.parallelContact = true move apart",
         number(*fork)
     )]
-    Joined {
-        name: &'static str,
-        file: String,
-        fork: f64,
-    },
+    Joined { name: &'static str, file: String, fork: f64 },
     /// A damping ratio that may be meant in per cent.
     #[error(
         "{name} = {file}: damping = {} of the lowest mode is a ratio to the critical one, {} % of it",
         number(*damping), number(100.0 * damping)
     )]
-    Damped {
-        name: &'static str,
-        file: String,
-        damping: f64,
-    },
+    Damped { name: &'static str, file: String, damping: f64 },
     /// A spring bent so far that a linear beam misses a part of its force.
     #[error(
         "contact.overtravel = {} m: the spring is bent by {bent:.2} of its length of {} m; an elastica under a load along y is \
          there {stiffer:.1} % stiffer than this linear beam (first order)",
         number(*overtravel), number(*length)
     )]
-    BentFar {
-        overtravel: f64,
-        length: f64,
-        bent: f64,
-        stiffer: f64,
-    },
+    BentFar { overtravel: f64, length: f64, bent: f64, stiffer: f64 },
     /// Friction between contacts that are much softer or much stiffer at first touch than those of Hertz.
     #[error(
         "effects.friction = Coulomb with contact.stiffnessExponent = {}: where such a contact opens and closes, the tolerance is \
@@ -187,14 +133,7 @@ pub enum Remark {
          height makes slip stable, more damping may",
         if *away { "away from" } else { "towards" }, number(*coefficient), number(*height), sounding(*frequency)
     )]
-    UnstableSlip {
-        away: bool,
-        force: f64,
-        growth: f64,
-        frequency: f64,
-        coefficient: f64,
-        height: f64,
-    },
+    UnstableSlip { away: bool, force: f64, growth: f64, frequency: f64, coefficient: f64, height: f64 },
     /// A criterion of interruptions that even an open contact does not meet.
     #[error(
         "chatter.resistanceThreshold = {} Ohm: an open contact has resistance.open = {} Ohm, so that no interruption is counted",
@@ -206,22 +145,12 @@ pub enum Remark {
         "{name} = {file}: its modes end at {highest:.0} Hz, an impact of the contact excites the spring up to {reached:.0} Hz; \
          forces of impacts, and what rings on after them, are right only as far as the modes reach"
     )]
-    FewModes {
-        name: &'static str,
-        file: String,
-        highest: f64,
-        reached: f64,
-    },
+    FewModes { name: &'static str, file: String, highest: f64, reached: f64 },
 }
 
 impl SceneError {
     pub(crate) fn out_of_range(name: &'static str, value: f64, unit: &'static str, allowed: String) -> Self {
-        Self::OutOfRange {
-            name,
-            value,
-            unit,
-            allowed,
-        }
+        Self::OutOfRange { name, value, unit, allowed }
     }
 }
 
@@ -236,11 +165,7 @@ pub(crate) fn number(value: f64) -> String {
 
 /// How a growing motion sounds, at this frequency (Hz).
 fn sounding(frequency: f64) -> String {
-    if frequency > 0.0 {
-        format!("at {frequency:.2e} Hz")
-    } else {
-        "without vibration".to_owned()
-    }
+    if frequency > 0.0 { format!("at {frequency:.2e} Hz") } else { "without vibration".to_owned() }
 }
 
 fn meant(nearest: Option<&str>) -> String {

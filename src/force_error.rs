@@ -109,12 +109,7 @@ impl Slowest {
     /// Their free motion, of each by its index and itself.
     pub(crate) fn free(&self, of: impl Fn(usize, &Mode) -> FreeMotion) -> FreeMotions {
         let mut motions = FreeMotions::default();
-        let FreeMotions {
-            q_from_q,
-            q_from_v,
-            v_from_q,
-            v_from_v,
-        } = &mut motions;
+        let FreeMotions { q_from_q, q_from_v, v_from_q, v_from_v } = &mut motions;
         let lanes = q_from_q.iter_mut().zip(q_from_v).zip(v_from_q).zip(v_from_v);
         for ((i, mode), (((q_from_q, q_from_v), v_from_q), v_from_v)) in self.modes.iter().zip(lanes) {
             let free = of(*i, mode);

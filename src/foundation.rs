@@ -26,10 +26,7 @@ impl Model {
     /// # Errors
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, support: f64) -> Result<Self, SceneError> {
-        let initial = Initial {
-            displacements: [support, 0.0, 0.0],
-            ..Initial::default()
-        };
+        let initial = Initial { displacements: [support, 0.0, 0.0], ..Initial::default() };
         Ok(*Self::starting(scene, &initial)?)
     }
 
@@ -65,9 +62,7 @@ impl Model {
             });
         };
         let resolution = springs.resolution(&basis, &own);
-        let Basis {
-            modes, shapes, space, ..
-        } = basis;
+        let Basis { modes, shapes, space, .. } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
             .map(Box::new);
@@ -151,9 +146,7 @@ fn counts(
     springs: &Springs,
     (own, [parallel, second], bending_force): (&Blow, [Option<Power>; 2], f64),
 ) -> Counts {
-    let pusher = scene
-        .pushed_at()
-        .map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
+    let pusher = scene.pushed_at().map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
     let blow = |power: Power| blow(scene, bending_force, &power);
     let others = [parallel, second, pusher].map(|power| power.map_or(*own, blow));
     let asked = usize::try_from(scene.solver.modes).unwrap_or_default();

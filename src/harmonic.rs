@@ -39,16 +39,10 @@ pub fn response(model: &Model, omega: f64) -> Response {
     // Displacement of the tip per force on it, and per base acceleration.
     let (compliance, shaken) = model.modes.iter().fold((zero, zero), |(compliance, shaken), mode| {
         let dynamic = 1.0 / Complex::new(mode.omega_squared - omega * omega, omega * mode.damping);
-        (
-            compliance + dynamic * mode.tip * mode.tip,
-            shaken - dynamic * mode.tip * mode.participation,
-        )
+        (compliance + dynamic * mode.tip * mode.tip, shaken - dynamic * mode.tip * mode.participation)
     });
     let displacement = shaken / (contact * compliance + 1.0);
-    Response {
-        force: -contact * displacement,
-        displacement,
-    }
+    Response { force: -contact * displacement, displacement }
 }
 
 /// Base acceleration (m/s2) whose linear response at the angular frequency `omega` (rad/s) has an amplitude of the

@@ -77,11 +77,8 @@ impl Inputs {
     }
 
     /// Those that move bodies.
-    pub const MOVING: [RealInput; INPUTS] = [
-        RealInput::SupportDisplacement,
-        RealInput::SecondDisplacement,
-        RealInput::PusherDisplacement,
-    ];
+    pub const MOVING: [RealInput; INPUTS] =
+        [RealInput::SupportDisplacement, RealInput::SecondDisplacement, RealInput::PusherDisplacement];
 
     /// Displacements of the bodies that inputs move after `size` seconds, m, in the order of [`Self::MOVING`].
     pub fn displacements_after(&self, size: f64) -> Ways {

@@ -61,10 +61,7 @@ impl Port {
         let moves = |entry: &f64| *entry != 0.0;
         let first = shape.iter().position(moves).unwrap_or(0);
         let last = shape.iter().rposition(moves).map_or(first, |last| last + 1);
-        Self {
-            shape,
-            modes: first..last,
-        }
+        Self { shape, modes: first..last }
     }
 
     /// Displacement (m) and velocity (m/s).
@@ -151,13 +148,11 @@ impl Link {
     /// without a contact law.
     #[inline(always)]
     pub fn engagement(&self, deviation: f64, rate: f64) -> f64 {
-        self.contact()
-            .map_or(-1.0, |law| law.engagement(self.approach + deviation, rate))
+        self.contact().map_or(-1.0, |law| law.engagement(self.approach + deviation, rate))
     }
 
     /// Force of the contact law at an approach given as deviation (m), N; 0 without one.
     pub fn force_at(&self, deviation: f64, rate: f64) -> f64 {
-        self.contact()
-            .map_or(0.0, |law| law.force(self.approach + deviation, rate))
+        self.contact().map_or(0.0, |law| law.force(self.approach + deviation, rate))
     }
 }

@@ -84,10 +84,7 @@ mod tests {
 
     #[test]
     fn the_derivative_of_the_force_is_its_slope() {
-        let magnet = Magnet {
-            hold: 4.0,
-            constant: 1e-4,
-        };
+        let magnet = Magnet { hold: 4.0, constant: 1e-4 };
         for gap in [1e-6, 1e-4, 1e-3] {
             let step = 1e-4 * gap;
             let [below, above] = [gap - step, gap + step].map(|gap| magnet.force(gap, 0.7).0);

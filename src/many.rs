@@ -101,9 +101,7 @@ fn side_by_side<T: Sync, R: Send + Sync>(
         worker();
     });
     let missing = || Err(RunError::Panic("not run".to_owned()));
-    rows.into_iter()
-        .map(|row| row.into_inner().unwrap_or_else(missing))
-        .collect()
+    rows.into_iter().map(|row| row.into_inner().unwrap_or_else(missing)).collect()
 }
 
 #[cfg(test)]

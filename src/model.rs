@@ -121,11 +121,7 @@ impl Model {
         let tolerance = self.scene.solver.effective_tolerance();
         self.tolerance = Tolerance::new(tolerance, self.force_scale);
         // Friction keeps its share of the force that the scene has.
-        self.link(Laws {
-            contact: self.law.parting(tolerance, self.force_scale),
-            parallel,
-            second,
-        });
+        self.link(Laws { contact: self.law.parting(tolerance, self.force_scale), parallel, second });
         self
     }
 
@@ -158,10 +154,7 @@ impl Model {
     fn friction_at_touch(&self) -> Option<Remark> {
         let exponent = self.scene.contact.stiffness_exponent;
         let other = self.scene.effects.contact_law == ContactLawKind::Rough && !RUBBING.contains(&exponent);
-        (other && self.friction().is_some()).then_some(Remark::FrictionAtTouch {
-            exponent,
-            range: RUBBING,
-        })
+        (other && self.friction().is_some()).then_some(Remark::FrictionAtTouch { exponent, range: RUBBING })
     }
 
     fn no_interruption(&self) -> Option<Remark> {
@@ -264,10 +257,7 @@ impl Model {
             time,
             coil: self.initial.coil,
             links,
-            slip: Slip {
-                way: sprung.unwrap_or_default(),
-                ..Slip::default()
-            },
+            slip: Slip { way: sprung.unwrap_or_default(), ..Slip::default() },
             last_kink: time,
             lengths: StepLengths::new(self.first_step(time)),
             ..State::empty()
@@ -279,9 +269,7 @@ impl Model {
 
     /// Energy of a state relative to the preload, J.
     pub fn energy(&self, state: &State) -> f64 {
-        self.energy_at(&state.modes, state.coil, |index| {
-            state.links.get(index).map_or(0.0, |link| link.approach)
-        })
+        self.energy_at(&state.modes, state.coil, |index| state.links.get(index).map_or(0.0, |link| link.approach))
     }
 
     /// Kinetic and strain energy of the modes, elastic energy of the contacts, and that of the magnet at a current of the coil

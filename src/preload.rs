@@ -72,10 +72,7 @@ impl Initial {
 
 impl Default for Initial {
     fn default() -> Self {
-        Self {
-            displacements: [0.0; INPUTS],
-            coil: 1.0,
-        }
+        Self { displacements: [0.0; INPUTS], coil: 1.0 }
     }
 }
 
@@ -108,10 +105,7 @@ impl Preload {
                 value: f64::NAN,
             });
         };
-        Ok(Self {
-            armature,
-            ..at(armature.place)?
-        })
+        Ok(Self { armature, ..at(armature.place)? })
     }
 }
 
@@ -169,11 +163,7 @@ impl<'a> Pressed<'a> {
             AxialForceKind::Prescribed => RealParameter::BeamAxialForce.variable().name,
             _ => RealOutput::PreloadAxialForce.variable().name,
         };
-        Err(SceneError::Buckled {
-            name,
-            value: axial_force,
-            limit,
-        })
+        Err(SceneError::Buckled { name, value: axial_force, limit })
     }
 
     /// Deflection of the tip per contact force with the friction that comes with it, m/N.
@@ -191,9 +181,7 @@ impl<'a> Pressed<'a> {
             return (0.0, 0.0);
         };
         let by = self.springs.moving.statics.at_pusher(n);
-        let by_parallel = self
-            .parallel
-            .map_or(0.0, |_| self.springs.at_parallel(n).pushed * parallel);
+        let by_parallel = self.parallel.map_or(0.0, |_| self.springs.at_parallel(n).pushed * parallel);
         // Friction turns the spring as it presses the contact.
         let lever = self.share.map_or(0.0, |share| share * self.scene.tip.contact_height);
         // Of the spring without the pusher, which is where it pushes.
@@ -232,29 +220,18 @@ impl<'a> Pressed<'a> {
         };
         let open = self.parallel_indentation(&first, 0.0);
         if open <= 0.0 {
-            return Ok(Preload {
-                parallel_indentation: open,
-                ..first
-            });
+            return Ok(Preload { parallel_indentation: open, ..first });
         }
         let excess = |d: f64| {
             let force = law.elastic_force(d);
             // A force that the spring cannot take is too large.
-            self.with(force)
-                .map_or(f64::MAX, |with| d - self.parallel_indentation(&with, force))
+            self.with(force).map_or(f64::MAX, |with| d - self.parallel_indentation(&with, force))
         };
         let Some(indentation) = roots::bracketed(excess, 0.0, open) else {
-            return Err(SceneError::NotFinite {
-                name: RealOutput::ParallelForce.variable().name,
-                value: excess(open),
-            });
+            return Err(SceneError::NotFinite { name: RealOutput::ParallelForce.variable().name, value: excess(open) });
         };
         let force = law.elastic_force(indentation);
-        Ok(Preload {
-            parallel_force: force,
-            parallel_indentation: indentation,
-            ..self.with(force)?
-        })
+        Ok(Preload { parallel_force: force, parallel_indentation: indentation, ..self.with(force)? })
     }
 
     /// The equilibrium with a parallel contact that presses with this force, N.
@@ -275,10 +252,7 @@ impl<'a> Pressed<'a> {
         if total_overtravel <= alone {
             let axial_force = self.axial(alone);
             self.check_buckling(axial_force)?;
-            return Ok(Preload {
-                indentation: total_overtravel - alone,
-                ..rests(0.0, alone, axial_force)
-            });
+            return Ok(Preload { indentation: total_overtravel - alone, ..rests(0.0, alone, axial_force) });
         }
         self.check_jam(self.axial(total_overtravel))?;
         // Whatever the force, it does not draw the spring beyond where it is alone.
@@ -319,11 +293,7 @@ impl<'a> Pressed<'a> {
         let alone = statics.tip_compliance(n);
         let both = alone + self.springs.fixed.as_ref().map_or(0.0, Beside::tip_compliance);
         let limit = |free: f64, now: f64| {
-            if now > 0.0 {
-                f64::INFINITY
-            } else {
-                rubbed * free / (free - now)
-            }
+            if now > 0.0 { f64::INFINITY } else { rubbed * free / (free - now) }
         };
         Err(SceneError::Jams {
             coefficient: friction.coefficient,

@@ -33,10 +33,7 @@ impl<T> Shared<T> {
 
 impl<T> Clone for Shared<T> {
     fn clone(&self) -> Self {
-        Self {
-            value: self.value.clone(),
-            home: self.home,
-        }
+        Self { value: self.value.clone(), home: self.home }
     }
 }
 

@@ -61,10 +61,7 @@ impl Simulation {
     /// A [`SceneError`] if the scene cannot be simulated.
     pub fn new(scene: &Scene, inputs: &Inputs, start_time: f64) -> Result<Self, SceneError> {
         let [support, displacement, pusher] = inputs.displacements_after(0.0);
-        let initial = Initial {
-            displacements: [support, 0.0, pusher],
-            coil: inputs.coil_relative_current,
-        };
+        let initial = Initial { displacements: [support, 0.0, pusher], coil: inputs.coil_relative_current };
         let mut simulation = Self::at_rest(scene, &initial, start_time)?;
         let Self { model, motion, .. } = &mut simulation;
         let room = model.room(displacement);
@@ -95,23 +92,13 @@ impl Simulation {
         if !memory::has(needed) {
             return Err(SceneError::Memory(needed));
         }
-        Ok(Self {
-            motion: Motion::at_rest(&model, start_time),
-            workspace: Workspace::new(&model),
-            model,
-            _kept: kept,
-        })
+        Ok(Self { motion: Motion::at_rest(&model, start_time), workspace: Workspace::new(&model), model, _kept: kept })
     }
 
     /// A model with any initial state: for reference runs, or to continue a run with other parameters.
     pub fn from_state(model: Model, state: &State) -> Self {
         let workspace = Workspace::new(&model);
-        Self {
-            model: Box::new(model),
-            motion: Box::new(Motion::new(*state)),
-            workspace,
-            _kept: Kept::default(),
-        }
+        Self { model: Box::new(model), motion: Box::new(Motion::new(*state)), workspace, _kept: Kept::default() }
     }
 
     /// The state at the communication point; [`Simulation::state`] may be earlier.
@@ -266,8 +253,7 @@ impl Simulation {
 
     /// Extremes of the force of a link; 0 without it, or if they are not requested.
     fn range(&self, role: Option<usize>) -> Range {
-        role.zip(self.extremes())
-            .map_or_else(Range::default, |(index, mut extremes)| *extremes.of(index))
+        role.zip(self.extremes()).map_or_else(Range::default, |(index, mut extremes)| *extremes.of(index))
     }
 
     /// The last instant of an event of a link, s; -1 where it has not been yet, or without the link.

@@ -134,10 +134,7 @@ type Range = [f64; 2];
 
 fn product([a, b]: Range, [c, d]: Range) -> Range {
     let all = [a * c, a * d, b * c, b * d];
-    [
-        all.into_iter().fold(f64::INFINITY, f64::min),
-        all.into_iter().fold(f64::NEG_INFINITY, f64::max),
-    ]
+    [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
 }
 
 fn add(sum: &mut Range, range: Range) {
@@ -190,9 +187,7 @@ impl<'a> Loop<'a> {
         let most = self.modes.iter().map(|mode| mode.omega_squared).fold(0.0, f64::max);
         let pairs = self.modes.iter().zip(self.loads);
         let gain = self.stiffest * pairs.map(|(mode, load)| (mode.tip * load).abs()).sum::<f64>() / 0.75;
-        (2.0 * most.sqrt())
-            .max(2.0 * gain * self.contact_damping)
-            .max((2.0 * gain).sqrt())
+        (2.0 * most.sqrt()).max(2.0 * gain * self.contact_damping).max((2.0 * gain).sqrt())
     }
 
     /// Whether the response keeps away from the numbers that it must not reach at these frequencies (1/s); `false` also where its bounds
@@ -237,9 +232,7 @@ fn fastest(modes: &[Mode], loads: &DVector<f64>, law: &Power, force: f64) -> Opt
     let square = (count, count);
     matrix.view_mut((0, count), square).set_diagonal(&omega);
     matrix.view_mut((count, 0), square).set_diagonal(&-&omega);
-    matrix
-        .view_mut(square, square)
-        .set_diagonal(&-per_mode(|mode| mode.damping));
+    matrix.view_mut(square, square).set_diagonal(&-per_mode(|mode| mode.damping));
     let mut held = matrix.view_mut((count, 0), square);
     held.ger(-stiffness, loads, &tip.component_div(&omega), 1.0);
     let mut damped = matrix.view_mut(square, square);
@@ -274,26 +267,17 @@ mod tests {
                     omega *= 1.01 + 2.0 * random() * random();
                     Mode {
                         omega_squared: omega * omega,
-                        damping: if random() < 0.02 {
-                            0.0
-                        } else {
-                            by_mass + damped * omega * omega * 1e-3
-                        },
+                        damping: if random() < 0.02 { 0.0 } else { by_mass + damped * omega * omega * 1e-3 },
                         tip: 20.0 * (random() - 0.5),
                         ..Mode::default()
                     }
                 })
                 .collect();
             let against = random();
-            let loads = modes
-                .iter()
-                .map(|mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5));
+            let loads =
+                modes.iter().map(|mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5));
             let loads = DVector::from_vec(loads.collect::<Vec<f64>>());
-            let damping = if case % 3 == 0 {
-                0.0
-            } else {
-                10_f64.powf(-8.0 + 4.0 * random())
-            };
+            let damping = if case % 3 == 0 { 0.0 } else { 10_f64.powf(-8.0 + 4.0 * random()) };
             let law = Power {
                 coefficient: 10_f64.powf(8.0 + 3.0 * random()),
                 exponent: HERTZ,

@@ -76,15 +76,7 @@ pub struct LinkState {
 
 impl LinkState {
     fn is_sound(&self, time: f64) -> bool {
-        let Self {
-            approach,
-            rate,
-            force,
-            course,
-            closed: _,
-            last_opening,
-            last_closing,
-        } = self;
+        let Self { approach, rate, force, course, closed: _, last_opening, last_closing } = self;
         let mut numbers = [approach, rate, force].into_iter().chain(course);
         let mut events = [last_opening, last_closing].into_iter().flatten();
         numbers.all(|number| number.is_finite()) && events.all(|event| is_past(*event, time))

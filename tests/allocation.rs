@@ -19,12 +19,7 @@ fn allocations(contact: &Instance, size: f64, begin: impl Fn(u32)) -> usize {
     for n in 0..1000 {
         let before = Counting::calls();
         begin(n);
-        assert_eq!(
-            contact.step(f64::from(n) * size, size),
-            fmi2OK,
-            "{:?}",
-            contact.messages()
-        );
+        assert_eq!(contact.step(f64::from(n) * size, size), fmi2OK, "{:?}", contact.messages());
         assert!(contact.real("contact.force").is_finite() && contact.real("contact.resistance").is_finite());
         let made = Counting::calls() - before;
         if contact.messages().is_empty() {
@@ -68,18 +63,11 @@ fn a_step_of_any_scene_allocates_nothing() {
             let contact = Instance::new();
             contact.set_scene(&scene);
             let size = file.communication_step;
-            let inputs: Vec<_> = (0..1000)
-                .map(|n| file.inputs_over(f64::from(n) * size, size).unwrap())
-                .collect();
+            let inputs: Vec<_> = (0..1000).map(|n| file.inputs_over(f64::from(n) * size, size).unwrap()).collect();
             contact.set_inputs(&inputs[0]);
             contact.initialize();
             let begin = |n| contact.set_inputs(&inputs[n as usize]);
-            assert_eq!(
-                allocations(&contact, size, begin),
-                0,
-                "{} at {tolerance}",
-                path.display()
-            );
+            assert_eq!(allocations(&contact, size, begin), 0, "{} at {tolerance}", path.display());
         }
     }
 }
@@ -95,10 +83,7 @@ fn an_exact_step_allocates_nothing() {
     }
     contact.initialize();
     let begin = |n| {
-        assert_eq!(
-            contact.set_real("base.acceleration", if n % 100 < 50 { 20.0 } else { -20.0 }),
-            fmi2OK
-        );
+        assert_eq!(contact.set_real("base.acceleration", if n % 100 < 50 { 20.0 } else { -20.0 }), fmi2OK);
     };
     assert_eq!(allocations(&contact, 1e-6, begin), 0);
     assert!(contact.integer("solver.steps") < 500, "no step went ahead");

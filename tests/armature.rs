@@ -30,10 +30,7 @@ fn alone() -> Scene {
 }
 
 fn coil(current: f64) -> Inputs {
-    Inputs {
-        coil_relative_current: current,
-        ..Inputs::default()
-    }
+    Inputs { coil_relative_current: current, ..Inputs::default() }
 }
 
 fn close(a: f64, b: f64, share: f64) {
@@ -49,30 +46,15 @@ fn the_coil_says_which_of_two_positions_it_has() {
     let preload = on.model().preload;
     assert!(preload.force > 0.1 && preload.pusher_force > 0.1 && on.boolean(BooleanOutput::PusherClosed));
     let place = on.real(RealOutput::ArmatureDisplacement);
-    close(
-        place,
-        given.core_position + preload.armature.core_force / given.stop_stiffness,
-        1e-12,
-    );
+    close(place, given.core_position + preload.armature.core_force / given.stop_stiffness, 1e-12);
     let spring = given.return_force + given.stiffness * (place - given.rest_position);
-    close(
-        preload.armature.core_force,
-        given.hold_force - spring - preload.pusher_force,
-        1e-9,
-    );
-    close(
-        on.real(RealOutput::StepMinimumStopForce),
-        preload.armature.core_force,
-        1e-12,
-    );
+    close(preload.armature.core_force, given.hold_force - spring - preload.pusher_force, 1e-9);
+    close(on.real(RealOutput::StepMinimumStopForce), preload.armature.core_force, 1e-12);
     close(on.real(RealOutput::ArmatureGap), given.core_position - place, 1e-9);
 
     let off = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
     let preload = off.model().preload;
-    assert_eq!(
-        (preload.force, preload.pusher_force, preload.armature.magnet_force),
-        (0.0, 0.0, 0.0)
-    );
+    assert_eq!((preload.force, preload.pusher_force, preload.armature.magnet_force), (0.0, 0.0, 0.0));
     close(preload.armature.rest_force, given.return_force, 1e-3);
     // Too weak a current holds nothing.
     let weak = Simulation::new(&scene, &coil(0.2), 0.0).unwrap();
@@ -87,10 +69,7 @@ fn the_coil_lets_go_and_draws_again() {
     let held = simulation.real(RealOutput::ContactForce);
     let pushed = simulation.real(RealOutput::StepMinimumPusherForce);
     assert_eq!(pushed, simulation.model().preload.pusher_force);
-    let ramp = Inputs {
-        coil_relative_current_rate: 2e3,
-        ..coil(0.5)
-    };
+    let ramp = Inputs { coil_relative_current_rate: 2e3, ..coil(0.5) };
     let gaps = [coil(0.6), ramp].map(|inputs| {
         let mut other = simulation.clone();
         other.step(&inputs, 0.0, 1e-4).unwrap();
@@ -99,10 +78,7 @@ fn the_coil_lets_go_and_draws_again() {
     close(gaps[0], gaps[1], 1e-9);
     simulation.step(&coil(0.0), 0.0, 5e-4).unwrap();
     let velocity = simulation.real(RealOutput::ArmatureVelocity);
-    assert!(
-        velocity < 0.0 && simulation.rate(RealOutput::ArmatureGap) == Some(-velocity),
-        "{velocity}"
-    );
+    assert!(velocity < 0.0 && simulation.rate(RealOutput::ArmatureGap) == Some(-velocity), "{velocity}");
     simulation.step(&coil(0.0), 5e-4, 0.1).unwrap();
     let off = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
     let place = RealOutput::ArmatureDisplacement;
@@ -124,11 +100,7 @@ fn a_slow_acceleration_releases_it_at_its_holding_force_over_its_mass() {
     let (rate, step) = (-threshold / 0.05, 1e-4);
     for n in 0..600 {
         let time = f64::from(n) * step;
-        let inputs = Inputs {
-            base_acceleration: rate * time,
-            base_acceleration_rate: rate,
-            ..coil(1.0)
-        };
+        let inputs = Inputs { base_acceleration: rate * time, base_acceleration_rate: rate, ..coil(1.0) };
         simulation.step(&inputs, time, step).unwrap();
     }
     let release = simulation.real(RealOutput::ArmatureLastRelease);
@@ -183,11 +155,7 @@ fn energy_is_kept_between_magnet_return_spring_and_stops() {
             [RealOutput::ArmatureDisplacement, RealOutput::ArmatureVelocity].map(|output| simulation.real(output));
         let gap = given.core_position - place;
         let way = place - given.rest_position;
-        let pulled = if gap > 0.0 {
-            gap / (1.0 + gap / given.gap_constant)
-        } else {
-            gap
-        };
+        let pulled = if gap > 0.0 { gap / (1.0 + gap / given.gap_constant) } else { gap };
         let stops = [gap, way].map(|gap| 0.5 * given.stop_stiffness * gap.min(0.0).powi(2));
         0.5 * given.mass * velocity * velocity
             + given.return_force * way
@@ -211,10 +179,7 @@ fn energy_is_kept_between_magnet_return_spring_and_stops() {
             assert!(balance.abs() < 1e-4 * kinetic.max(1e-7), "{n}: {balance} of {kinetic}");
         }
     }
-    assert!(
-        seated > 10 && rested > 10 && fastest > 0.1,
-        "{seated} {rested} {fastest}"
-    );
+    assert!(seated > 10 && rested > 10 && fastest > 0.1, "{seated} {rested} {fastest}");
 }
 
 /// One out of reach drops from its core, then vibration opens the contact. Its blows at the stops neither hide how errors grow at the
@@ -224,11 +189,7 @@ fn an_armature_that_touches_nothing_does_not_change_what_is_announced() {
     let run = |pusher, tolerance| {
         let mut scene = shaken(450.0, 1000.0);
         (scene.effects.pusher, scene.solver.tolerance) = (pusher, tolerance);
-        (
-            scene.excitation.start_time,
-            scene.beam.stiffness_damping,
-            scene.contact.damping,
-        ) = (0.01, 3e-7, 1e-6);
+        (scene.excitation.start_time, scene.beam.stiffness_damping, scene.contact.damping) = (0.01, 3e-7, 1e-6);
         (scene.armature.rest_position, scene.armature.core_position) = (-1.5e-3, -1.1e-3);
         scene.armature.unbalance = 0.0;
         let mut simulation = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
@@ -245,10 +206,7 @@ fn an_armature_that_touches_nothing_does_not_change_what_is_announced() {
         let (found, told) = run(PusherKind::Armature, tolerance);
         let error = largest_difference(&found, &expected) / greatest;
         // 1: the force is not known at all.
-        assert!(
-            told == 1.0 || error < told.max(tolerance),
-            "{tolerance:e}: {error:e}, told {told:e}"
-        );
+        assert!(told == 1.0 || error < told.max(tolerance), "{tolerance:e}: {error:e}, told {told:e}");
     }
 }
 
@@ -266,11 +224,7 @@ fn the_magnet_softens_an_armature_that_floats() {
         let (place, drawn) = (model.preload.armature.place, model.preload.armature.magnet_force);
         close(given.stiffness * (place - given.rest_position), drawn, 1e-9);
         let gap = given.core_position - place;
-        close(
-            drawn,
-            given.hold_force * (current / (1.0 + gap / given.gap_constant)).powi(2),
-            1e-9,
-        );
+        close(drawn, given.hold_force * (current / (1.0 + gap / given.gap_constant)).powi(2), 1e-9);
         let slope = 2.0 * drawn / (given.gap_constant + gap);
         assert!(slope > 0.05 * given.stiffness && slope < given.stiffness, "{slope}");
         let expected = ((given.stiffness - slope) / given.mass).sqrt() / TAU;

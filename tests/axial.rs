@@ -50,12 +50,9 @@ fn rest_is_found_and_kept() {
 
 #[test]
 fn violence_ends_in_a_motion_or_in_an_error_with_its_time() {
-    for (length, thickness, amplitude) in [
-        (12.5e-3, 1.19e-4, 1e3),
-        (12.5e-3, 1.19e-4, 1e5),
-        (12.5e-3, 1e-5, 1e6),
-        (15.5e-3, 1e-4, 1e6),
-    ] {
+    for (length, thickness, amplitude) in
+        [(12.5e-3, 1.19e-4, 1e3), (12.5e-3, 1.19e-4, 1e5), (12.5e-3, 1e-5, 1e6), (15.5e-3, 1e-4, 1e6)]
+    {
         for damping in [0.0, 8e-5] {
             let mut scene = bent();
             scene.solver.modes = 0;

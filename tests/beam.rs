@@ -6,13 +6,8 @@ use relay_contact::scene::Scene;
 use testing::near;
 
 /// E I = rho A = L = 1, so that omega = (beta L)^2.
-const UNIT: Section = Section {
-    length: 1.0,
-    bending_stiffness: 1.0,
-    mass_per_length: 1.0,
-    tip_mass: 0.0,
-    tip_inertia: 0.0,
-};
+const UNIT: Section =
+    Section { length: 1.0, bending_stiffness: 1.0, mass_per_length: 1.0, tip_mass: 0.0, tip_inertia: 0.0 };
 
 #[test]
 fn published_eigenvalues_of_the_plain_beam() {
@@ -37,11 +32,7 @@ fn published_eigenvalues_of_the_plain_beam() {
 #[test]
 fn exact_frequencies_agree_with_galerkin() {
     for (tip_mass, tip_inertia) in [(0.0, 0.0), (0.3, 0.0), (0.0, 0.02), (2.0, 0.1)] {
-        let section = Section {
-            tip_mass,
-            tip_inertia,
-            ..UNIT
-        };
+        let section = Section { tip_mass, tip_inertia, ..UNIT };
         for axial_force in [-30.0, -1.0, 0.0, 1e-4, 1.0, 2.4] {
             for support in [0.0, 1.0, 5000.0, 1e7] {
                 let exact = reference::frequencies(&section, axial_force, support, 4);
@@ -49,10 +40,7 @@ fn exact_frequencies_agree_with_galerkin() {
                 assert_eq!(exact.len(), 4);
                 for (exact, mode) in exact.iter().zip(&galerkin.unwrap()) {
                     let error = (mode.omega_squared.sqrt() / exact - 1.0).abs();
-                    assert!(
-                        error < 1e-9,
-                        "m {tip_mass} J {tip_inertia} N {axial_force} k {support}: {exact} {error}"
-                    );
+                    assert!(error < 1e-9, "m {tip_mass} J {tip_inertia} N {axial_force} k {support}: {exact} {error}");
                 }
             }
         }
@@ -127,11 +115,7 @@ fn what_a_linear_beam_misses_of_a_spring_bent_far_is_told() {
         match model.remarks().as_slice() {
             [] => assert!(bent < 0.1, "{bent}: nothing told"),
             // The next order has (deflection over length)^4, and a factor of 1.2 to 1.4 up to 0.35 (by a solution with collocation).
-            [
-                Remark::BentFar {
-                    stiffer, bent: told, ..
-                },
-            ] => assert!(
+            [Remark::BentFar { stiffer, bent: told, .. }] => assert!(
                 bent > 0.0999
                     && (told / bent - 1.0).abs() < 2e-3
                     && (stiffer - missed).abs() < 100.0 * 1.4 * bent.powi(4) + 0.02,

@@ -49,12 +49,8 @@ impl Case {
 
 /// The contact stays closed; opens and closes with blows, looked at closely after the first; is closed by its support.
 fn cases() -> Vec<Case> {
-    let shaken = |name, amplitude, frequency, steps| Case {
-        name,
-        scene: shaken(amplitude, frequency),
-        steps,
-        support: |_| 0.0,
-    };
+    let shaken =
+        |name, amplitude, frequency, steps| Case { name, scene: shaken(amplitude, frequency), steps, support: |_| 0.0 };
     let mut open = Scene::default();
     open.contact.overtravel = -3e-5;
     vec![
@@ -62,12 +58,7 @@ fn cases() -> Vec<Case> {
         shaken("98 m/s2 at 250 Hz", 98.0, 250.0, vec![2e-5; 500]),
         shaken("98 m/s2 at 2000 Hz", 98.0, 2000.0, vec![1e-5; 500]),
         shaken("98 m/s2 in one step per ms", 98.0, 1000.0, vec![1e-3; 10]),
-        shaken(
-            "chatter at 400 m/s2",
-            400.0,
-            1000.0,
-            [vec![5e-6; 217], vec![2.5e-7; 40], vec![5e-6; 381]].concat(),
-        ),
+        shaken("chatter at 400 m/s2", 400.0, 1000.0, [vec![5e-6; 217], vec![2.5e-7; 40], vec![5e-6; 381]].concat()),
         Case {
             name: "closing by the support",
             scene: open,

@@ -41,9 +41,7 @@ fn interruptions(scene: &Scene, size: f64, stop: f64) -> (i32, f64, f64) {
     let mut simulation = Simulation::new(scene, &Inputs::default(), 0.0).unwrap();
     while simulation.time() < stop - 1e-12 {
         let time = simulation.time();
-        simulation
-            .step(&Inputs::default(), time, size.min(stop - time))
-            .unwrap();
+        simulation.step(&Inputs::default(), time, size.min(stop - time)).unwrap();
     }
     counted(&simulation)
 }
@@ -65,12 +63,9 @@ fn a_threshold_that_an_open_contact_does_not_reach_is_told() {
 #[test]
 fn interruptions_do_not_depend_on_the_communication_step() {
     // Errors grow from blow to blow, most under the strongest excitation.
-    for (amplitude, threshold, tolerance) in [
-        (400.0, 60.0, 1e-6),
-        (400.0, 0.1, 1e-6),
-        (98.0, 0.05, 1e-6),
-        (800.0, 60.0, 1e-9),
-    ] {
+    for (amplitude, threshold, tolerance) in
+        [(400.0, 60.0, 1e-6), (400.0, 0.1, 1e-6), (98.0, 0.05, 1e-6), (800.0, 60.0, 1e-9)]
+    {
         let mut scene = shaken(amplitude);
         scene.solver.tolerance = tolerance;
         scene.chatter.resistance_threshold = threshold;
@@ -141,26 +136,19 @@ fn extremes_are_those_of_the_course_inside_the_step() {
                     simulation.step(&Inputs::default(), time, size).unwrap();
                     for part in 0..parts {
                         let fine_size = size / f64::from(parts);
-                        fine.step(&Inputs::default(), time + f64::from(part) * fine_size, fine_size)
-                            .unwrap();
+                        fine.step(&Inputs::default(), time + f64::from(part) * fine_size, fine_size).unwrap();
                         forces.push(fine.real(RealOutput::ContactForce));
                     }
                     let least = simulation.real(RealOutput::StepMinimumForce);
                     let greatest = simulation.real(RealOutput::StepMaximumForce);
-                    let (low, high) = forces.iter().fold((f64::MAX, f64::MIN), |(low, high), force| {
-                        (low.min(*force), high.max(*force))
-                    });
+                    let (low, high) = forces
+                        .iter()
+                        .fold((f64::MAX, f64::MIN), |(low, high), force| (low.min(*force), high.max(*force)));
                     // Between two points of the trace the force turns: by an eighth of its second difference.
-                    let turn = forces
-                        .windows(3)
-                        .map(|f| (f[0] - 2.0 * f[1] + f[2]).abs())
-                        .fold(0.0, f64::max);
+                    let turn = forces.windows(3).map(|f| (f[0] - 2.0 * f[1] + f[2]).abs()).fold(0.0, f64::max);
                     let allowed = 2.0 * tolerance;
                     let at = format!("{law:?} {amplitude} m/s2, {size} s from {time}");
-                    assert!(
-                        least <= low + allowed && least >= low - allowed - turn,
-                        "{at}: {least} {low} {turn}"
-                    );
+                    assert!(least <= low + allowed && least >= low - allowed - turn, "{at}: {least} {low} {turn}");
                     assert!(
                         greatest >= high - allowed && greatest <= high + allowed + turn,
                         "{at}: {greatest} {high} {turn}"
@@ -196,10 +184,7 @@ fn the_greatest_force_of_a_blow_on_a_contact_of_nearly_constant_stiffness_is_wit
         let exact = greatest(exponent, 1e-8);
         for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
             let error = (greatest(exponent, tolerance) - exact).abs() / exact;
-            assert!(
-                error <= tolerance,
-                "n = {exponent}, {tolerance}: {error:.1e} of {exact} N"
-            );
+            assert!(error <= tolerance, "n = {exponent}, {tolerance}: {error:.1e} of {exact} N");
         }
     }
 }
@@ -291,15 +276,11 @@ fn an_interruption_that_hardly_is_one_comes_to_an_end() {
         scene.chatter.resistance_threshold = resistance(&scene, force);
         let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
         for period in 0..6 {
-            simulation
-                .step(&Inputs::default(), 1e-3 * f64::from(period), 1e-3)
-                .unwrap();
+            simulation.step(&Inputs::default(), 1e-3 * f64::from(period), 1e-3).unwrap();
             least = least.min(simulation.real(RealOutput::StepMinimumForce));
         }
-        let (count, steps) = (
-            simulation.integer(IntegerOutput::ChatterCount),
-            simulation.integer(IntegerOutput::SolverSteps),
-        );
+        let (count, steps) =
+            (simulation.integer(IntegerOutput::ChatterCount), simulation.integer(IntegerOutput::SolverSteps));
         assert!(steps < 200 && count <= 6, "{force}: {count} in {steps} steps");
         assert!(count > 0 || force < least + 1e-6, "{force} {least}");
     }

@@ -56,11 +56,7 @@ fn axial_force_of_the_preload_deflection() {
 fn linear_force_amplitude() {
     let model = Model::new(&specimen(), 0.0).unwrap();
     for (frequency, published) in [(500.0, 3.6295e-2), (1000.0, 4.8122e-2)] {
-        digits(
-            98.0 * reference::response(&model, TAU * frequency).force.norm(),
-            published,
-            1e-6,
-        );
+        digits(98.0 * reference::response(&model, TAU * frequency).force.norm(), published, 1e-6);
     }
 }
 

@@ -21,15 +21,9 @@ fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64;
     let mut rows = Vec::new();
     for k in 0..2000 / size {
         let time = |k: u32| 1e-6 * f64::from(k * size);
-        simulation
-            .step(&inputs(time(k)), time(k), 1e-6 * f64::from(size))
-            .unwrap();
+        simulation.step(&inputs(time(k)), time(k), 1e-6 * f64::from(size)).unwrap();
         if ((k + 1) * size).is_multiple_of(10) {
-            let outputs = [
-                RealOutput::ContactForce,
-                RealOutput::ContactIndentation,
-                RealOutput::TipVelocity,
-            ];
+            let outputs = [RealOutput::ContactForce, RealOutput::ContactIndentation, RealOutput::TipVelocity];
             rows.push(outputs.map(|output| simulation.real(output)));
         }
     }
@@ -84,9 +78,7 @@ fn a_step_of_a_rounding_from_a_point_early_by_more_does_not_turn_time_back() {
         simulation.step(&Inputs::default(), time, size).unwrap();
         let (time, force) = (simulation.time(), simulation.real(RealOutput::ContactForce));
         let spacing = time.next_up() - time;
-        simulation
-            .step(&Inputs::default(), time - 4.0 * spacing, spacing)
-            .unwrap();
+        simulation.step(&Inputs::default(), time - 4.0 * spacing, spacing).unwrap();
         assert!(simulation.time() >= time, "{} {time}", simulation.time());
         // It changes by some hundreds of newtons a second.
         let found = simulation.real(RealOutput::ContactForce);
@@ -128,13 +120,8 @@ fn a_linear_motion_whose_time_is_too_coarse_is_refused_and_stays_as_it_was() {
     for (start, size) in [(1e12, 1e-3), (1e13, 1e-2), (1e15, 1e-3), (1e15, 1.0)] {
         let mut simulation = Simulation::new(&scene, &Inputs::default(), start).unwrap();
         let before = *simulation.motion();
-        let stepped = simulation
-            .step(&Inputs::default(), start, size)
-            .map_err(|error| error.cause);
-        assert!(
-            matches!(stepped, Err(StepErrorCause::Resolution { .. })),
-            "{start} s: {stepped:?}"
-        );
+        let stepped = simulation.step(&Inputs::default(), start, size).map_err(|error| error.cause);
+        assert!(matches!(stepped, Err(StepErrorCause::Resolution { .. })), "{start} s: {stepped:?}");
         assert_eq!(*simulation.motion(), before);
     }
 }
@@ -157,10 +144,7 @@ fn a_simulation_may_start_before_one_second_before_zero() {
         (forces, events.map(|event| simulation.real(event) - start))
     };
     let (expected, expected_events) = run(0.0);
-    assert!(
-        expected_events.iter().all(|event| *event > 0.0),
-        "it does not open and close"
-    );
+    assert!(expected_events.iter().all(|event| *event > 0.0), "it does not open and close");
     // Both are within the tolerance, which is relative to the largest force too.
     let largest = expected.iter().copied().fold(force_scale(&Scene::default()), f64::max);
     let allowed = 2.0 * Scene::default().solver.effective_tolerance() * largest;
@@ -273,10 +257,7 @@ fn every_event_is_reported_once() {
     let expected = events(2000, pulsed);
     assert!(expected.len() >= 5, "{expected:?}");
     for pair in expected.windows(2) {
-        assert!(
-            pair[0].time < pair[1].time && pair[0].closes != pair[1].closes,
-            "{pair:?}"
-        );
+        assert!(pair[0].time < pair[1].time && pair[0].closes != pair[1].closes, "{pair:?}");
     }
     for size in [400, 40, 4, 1] {
         let found = events(size, pulsed);
@@ -313,14 +294,8 @@ fn plans() -> [(&'static str, Vec<Driven>); 6] {
         (1e-6, walk, 0.0)
     });
     [
-        (
-            "sampled",
-            (0..1000).map(|k| (1e-6, wave(1e-6 * f64::from(k)), 0.0)).collect(),
-        ),
-        (
-            "random lengths",
-            (0..1000).map(|k| (wide(k), 20.0 * random(k), 0.0)).collect(),
-        ),
+        ("sampled", (0..1000).map(|k| (1e-6, wave(1e-6 * f64::from(k)), 0.0)).collect()),
+        ("random lengths", (0..1000).map(|k| (wide(k), 20.0 * random(k), 0.0)).collect()),
         ("random lengths, linear", smooth),
         ("random walk", walking.collect()),
         ("random", (0..500).map(|k| (1e-6, 200.0 * random(k), 0.0)).collect()),
@@ -335,12 +310,8 @@ fn driven(scene: &Scene, plan: &[Driven]) -> (Vec<[f64; 3]>, [i32; 2]) {
     let rows = plan.iter().map(|(size, acceleration, rate)| {
         (inputs.base_acceleration, inputs.base_acceleration_rate) = (*acceleration, *rate);
         simulation.step(&inputs, simulation.time(), *size).unwrap();
-        [
-            RealOutput::ContactForce,
-            RealOutput::StepMinimumForce,
-            RealOutput::StepMaximumForce,
-        ]
-        .map(|output| simulation.real(output))
+        [RealOutput::ContactForce, RealOutput::StepMinimumForce, RealOutput::StepMaximumForce]
+            .map(|output| simulation.real(output))
     });
     let rows = rows.collect();
     let steps = [IntegerOutput::SolverSteps, IntegerOutput::SolverRejectedSteps];
@@ -374,10 +345,7 @@ fn inputs_and_lengths_that_are_new_in_each_step_keep_the_tolerance() {
                     most = (0..if watched { 3 } else { 1 })
                         .fold(most, |most, i| most.max((found[i] - exact[i]).abs() / scale));
                 }
-                assert!(
-                    most <= tolerance,
-                    "{amplitude} m/s2, {damping}, {name}, {tolerance:e}: {most:e}"
-                );
+                assert!(most <= tolerance, "{amplitude} m/s2, {damping}, {name}, {tolerance:e}: {most:e}");
             }
         }
     }
@@ -389,8 +357,5 @@ fn steps_after_an_input_has_changed_begin_with_the_length_that_the_last_change_n
     let [.., (_, plan)] = plans();
     let (_, [steps, rejected]) = driven(&shaken(98.0, 1e-6), &plan);
     let most = 10 * i32::try_from(plan.len()).unwrap();
-    assert!(
-        5 * rejected < steps && steps < most,
-        "{steps} steps, {rejected} rejected"
-    );
+    assert!(5 * rejected < steps && steps < most, "{steps} steps, {rejected} rejected");
 }

@@ -22,21 +22,12 @@ fn disagreement((start, before, _): Read, (time, after, closed): Read, bonded: b
     let (range, step) = (least..=greatest, start..=time);
     let strange = opened && !step.contains(&opening) || touched && !step.contains(&closing);
     let wrong = [
-        (
-            !range.contains(&force),
-            "the force at the end is not between the extremes",
-        ),
+        (!range.contains(&force), "the force at the end is not between the extremes"),
         (!range.contains(&was), "that at the start is not"),
         (!bonded && least < 0.0, "a tensile force"),
-        (
-            (changed || was == 0.0) != (least == 0.0),
-            "open with a force, or no force without an opening",
-        ),
+        ((changed || was == 0.0) != (least == 0.0), "open with a force, or no force without an opening"),
         (greatest > 0.0 && !changed && was == 0.0, "a force, and no closing"),
-        (
-            closed != (force > 0.0 || !bonded && closing == time),
-            "closed is not a force",
-        ),
+        (closed != (force > 0.0 || !bonded && closing == time), "closed is not a force"),
         (strange, "an event of another step"),
     ];
     wrong.into_iter().find_map(|(wrong, what)| wrong.then_some(what))
@@ -85,10 +76,7 @@ fn ride(case: &str, scene: &Scene, rng: &mut Rng, duration: f64, inputs: impl Fn
         let after = read(&simulation);
         for (before, after) in before.iter().zip(&after) {
             let what = disagreement(*before, *after, bonded);
-            assert!(
-                what.is_none(),
-                "{case}, step of {size:e} s: {what:?}: {before:?} {after:?}"
-            );
+            assert!(what.is_none(), "{case}, step of {size:e} s: {what:?}: {before:?} {after:?}");
         }
         let now = count(&simulation);
         let [_, longest, total] = now;
@@ -113,9 +101,7 @@ fn outputs_of_random_relays_agree_with_each_other() {
             let case = format!("{kind} {number}");
             let duration = (size * f64::from(count)).min(20.0 / relay.scene.excitation.frequency);
             let rng = &mut Rng::with_seed(number);
-            ride(&case, &relay.scene, rng, duration, |time, size| {
-                relay.inputs(time, size)
-            });
+            ride(&case, &relay.scene, rng, duration, |time, size| relay.inputs(time, size));
         }
     }
 }
@@ -148,8 +134,6 @@ fn closed_contacts_at_any_frequency_stay_closed_in_what_is_read() {
         let frequency = 1800.0 + 2200.0 * rng.f64();
         let scene = scenes::shaken(294.1995, frequency);
         let case = format!("{number}: {frequency} Hz");
-        ride(&case, &scene, &mut Rng::with_seed(number), 30.0 / frequency, |_, _| {
-            Inputs::default()
-        });
+        ride(&case, &scene, &mut Rng::with_seed(number), 30.0 / frequency, |_, _| Inputs::default());
     }
 }

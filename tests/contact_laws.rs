@@ -5,17 +5,11 @@ use relay_contact::scene::Scene;
 
 #[test]
 fn an_open_contact_has_no_force_however_fast_it_moves() {
-    for law in [
-        Power::hertz(&Scene::default().contact),
-        Power::rough(&Scene::default().contact),
-        Power::linear(1e5, 1.0),
-    ] {
+    for law in
+        [Power::hertz(&Scene::default().contact), Power::rough(&Scene::default().contact), Power::linear(1e5, 1.0)]
+    {
         for (d, rate) in [(0.0, -1e20), (-1e-9, 1e20), (-1.0, 0.0)] {
-            let none = Branch {
-                force: 0.0,
-                stiffness: 0.0,
-                damping: 0.0,
-            };
+            let none = Branch { force: 0.0, stiffness: 0.0, damping: 0.0 };
             assert_eq!(law.closed_branch(d, rate), none, "{law:?} {d} {rate}");
         }
     }
@@ -63,29 +57,12 @@ fn a_third_is_hertz() {
     close(rough.coefficient, hertz.coefficient, 1e-14);
     assert_eq!(rough.exponent, 1.5);
     // The general formulas beside those in square roots.
-    let general = Power {
-        exponent: 1.5 + 1e-15,
-        ..hertz
-    };
-    for (a, b) in [
-        (-1e-8, 5e-8),
-        (0.0, 5e-8),
-        (1e-8, 5e-8),
-        (5e-8, 5.000_000_1e-8),
-        (4e-8, 4e-8),
-    ] {
+    let general = Power { exponent: 1.5 + 1e-15, ..hertz };
+    for (a, b) in [(-1e-8, 5e-8), (0.0, 5e-8), (1e-8, 5e-8), (5e-8, 5.000_000_1e-8), (4e-8, 4e-8)] {
         close(general.mean_force(a, b), hertz.mean_force(a, b), 1e-13);
         close(general.mean_stiffness(a, b), hertz.mean_stiffness(a, b), 1e-13);
-        close(
-            general.energy_above_tangent(a, b - a),
-            hertz.energy_above_tangent(a, b - a),
-            1e-13,
-        );
-        close(
-            general.energy_above_tangent(b, a - b),
-            hertz.energy_above_tangent(b, a - b),
-            1e-13,
-        );
+        close(general.energy_above_tangent(a, b - a), hertz.energy_above_tangent(a, b - a), 1e-13);
+        close(general.energy_above_tangent(b, a - b), hertz.energy_above_tangent(b, a - b), 1e-13);
     }
     let (a, b) = (general.closed_branch(4e-8, -1e-4), hertz.closed_branch(4e-8, -1e-4));
     close(a.force, b.force, 1e-13);

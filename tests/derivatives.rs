@@ -40,21 +40,13 @@ fn a_ramp_does_not_depend_on_where_it_is_cut() {
             let scale = force_scale(&scene);
             let difference = whole.real(RealOutput::ContactForce) - parts.real(RealOutput::ContactForce);
             // Each is right to the tolerance.
-            assert!(
-                difference.abs() <= 2.0 * scene.solver.tolerance * scale,
-                "{law:?} {damping}: {difference}"
-            );
+            assert!(difference.abs() <= 2.0 * scene.solver.tolerance * scale, "{law:?} {damping}: {difference}");
             // Quasi-static growth of the force; the lowest mode swings about it with an amplitude of rate / omega.
             let mass = propped_mass(&scene);
             let omega = TAU * whole.real(RealOutput::PreloadFrequency);
             let grown = whole.real(RealOutput::ContactForce) - whole.real(RealOutput::PreloadForce);
             let swing = mass * rate / omega;
-            near(
-                format_args!("{law:?} {damping}"),
-                grown,
-                mass * rate * 1e-3,
-                2.0 * swing,
-            );
+            near(format_args!("{law:?} {damping}"), grown, mass * rate * 1e-3, 2.0 * swing);
         }
     }
 }
@@ -62,17 +54,10 @@ fn a_ramp_does_not_depend_on_where_it_is_cut() {
 #[test]
 fn the_voltage_follows_the_current() {
     let mut simulation = Simulation::new(&Scene::default(), &Inputs::default(), 0.0).unwrap();
-    let mut inputs = Inputs {
-        contact_current: 0.1,
-        contact_current_rate: 50.0,
-        ..Inputs::default()
-    };
+    let mut inputs = Inputs { contact_current: 0.1, contact_current_rate: 50.0, ..Inputs::default() };
     simulation.step(&inputs, 0.0, 1e-3).unwrap();
     let resistance = simulation.real(RealOutput::ContactResistance);
-    assert_eq!(
-        simulation.real(RealOutput::ContactVoltage),
-        (0.1 + 50.0 * 1e-3) / (1.0 / resistance)
-    );
+    assert_eq!(simulation.real(RealOutput::ContactVoltage), (0.1 + 50.0 * 1e-3) / (1.0 / resistance));
     let rate = simulation.rate(RealOutput::ContactVoltage).unwrap();
     assert!((rate / (50.0 * resistance) - 1.0).abs() < 1e-12, "{rate}");
     // Without a derivative it is held.
@@ -95,11 +80,7 @@ fn an_open_contact_has_the_voltage_of_the_source_at_most() {
         (1e21, 1e6, 1e15),
     ] {
         scene.contact.open_voltage = limit;
-        let inputs = Inputs {
-            contact_current: current,
-            contact_current_rate: current,
-            ..Inputs::default()
-        };
+        let inputs = Inputs { contact_current: current, contact_current_rate: current, ..Inputs::default() };
         let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
         let voltage = simulation.real(RealOutput::ContactVoltage);
         assert!((voltage / expected - 1.0).abs() < 1e-15, "{current} A: {voltage} V");
@@ -128,11 +109,7 @@ fn check_slopes(
     counts: impl Fn(RealOutput, &[Three]) -> bool,
 ) {
     scene.solver.tolerance = 1e-9;
-    let mut inputs = Inputs {
-        contact_current: -1.0,
-        support_displacement_rate: speed,
-        ..Inputs::default()
-    };
+    let mut inputs = Inputs { contact_current: -1.0, support_displacement_rate: speed, ..Inputs::default() };
     let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
     let mut rows: Vec<Three> = Vec::new();
     while simulation.time() < 2e-3 {
@@ -146,19 +123,12 @@ fn check_slopes(
     for (n, output) in outputs.iter().enumerate() {
         let counting = (1..=rows.len()).filter(|end| counts(*output, &rows[..*end]));
         let counting: Vec<_> = counting.map(|end| rows[end - 1].each_ref().map(|at| at[n])).collect();
-        assert!(
-            counting.len() as f64 > 2e-4 / size,
-            "{case}, {output:?}: {}",
-            counting.len()
-        );
+        assert!(counting.len() as f64 > 2e-4 / size, "{case}, {output:?}: {}", counting.len());
         let values = || counting.iter().map(|[_, now, _]| now.0);
         let range = values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min);
         let noise = 2.0 * scene.solver.tolerance * range / NEAR;
         let steepest = counting.iter().map(|[_, now, _]| now.1.abs()).fold(0.0, f64::max);
-        assert!(
-            steepest > 100.0 * noise,
-            "{case}, {output:?}: nothing to be seen above {noise:e}"
-        );
+        assert!(steepest > 100.0 * noise, "{case}, {output:?}: nothing to be seen above {noise:e}");
         for [before, now, after] in counting {
             let slopes = [now.0 - before.0, after.0 - now.0].map(|difference| difference / NEAR);
             let (low, high) = (slopes[0].min(slopes[1]), slopes[0].max(slopes[1]));
@@ -195,13 +165,7 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
                 output != RealOutput::ContactConductance || rows.last().unwrap().iter().all(|at| at[0].0 > 0.0)
             };
             let outputs = if amplitude > 98.0 { &outputs[..5] } else { &outputs };
-            check_slopes(
-                &format!("{law:?}, {amplitude} m/s2"),
-                scene,
-                outputs,
-                (size, 0.0),
-                counts,
-            );
+            check_slopes(&format!("{law:?}, {amplitude} m/s2"), scene, outputs, (size, 0.0), counts);
         }
     }
 }

@@ -67,17 +67,8 @@ fn law(kind: ContactLawKind, maximum_step: f64) -> Scene {
 }
 
 fn cases() -> Vec<Case> {
-    let case = |name, scene, drive| Case {
-        name,
-        scene,
-        drive,
-        stop: 3e-3,
-        launch: 0.0,
-    };
-    let launched = |name, kind| Case {
-        launch: 0.1,
-        ..case(name, undamped_law(kind), held)
-    };
+    let case = |name, scene, drive| Case { name, scene, drive, stop: 3e-3, launch: 0.0 };
+    let launched = |name, kind| Case { launch: 0.1, ..case(name, undamped_law(kind), held) };
     vec![
         case("98 m/s2 at 1000 Hz", shaken(98.0), held),
         case("chatter at 400 m/s2", shaken(400.0), held),
@@ -89,10 +80,7 @@ fn cases() -> Vec<Case> {
         case("linearised", law(ContactLawKind::Linearised, 2e-5), held),
         case("bonded", law(ContactLawKind::Bonded, 2e-5), held),
         case("bonded, exact steps", law(ContactLawKind::Bonded, 0.0), held),
-        Case {
-            launch: 1e-3,
-            ..case("undamped", undamped(), held)
-        },
+        Case { launch: 1e-3, ..case("undamped", undamped(), held) },
         launched("undamped, blows", ContactLawKind::Hertz),
         launched("undamped rough, blows", ContactLawKind::Rough),
         launched("undamped linearised, blows", ContactLawKind::Linearised),
@@ -132,10 +120,7 @@ fn powers(rig: &Rig, inputs: &Inputs, since: f64) -> [f64; 2] {
     let d = model.preload.indentation + state.contact().approach;
     let rate = state.contact().rate;
     let in_contact = (model.law.force(d, rate) - model.law.force(d, 0.0)) * rate;
-    [
-        by_base + model.law.force(d, rate) * state.velocities[0],
-        in_beam + in_contact,
-    ]
+    [by_base + model.law.force(d, rate) * state.velocities[0], in_beam + in_contact]
 }
 
 /// Runs a case with communication steps of `size` (s), and sums up by the trapezoidal rule. Returns the sum, the change of
@@ -152,10 +137,7 @@ fn run(case: &Case, tolerance: f64, size: f64) -> (Sum, f64, f64) {
     // The static force does work on the displaced tip.
     let stored = |rig: &Rig| rig.energy() + rig.model.preload.force * rig.state.displacements[0];
     let start = stored(&rig);
-    let mut sum = Sum {
-        force_scale: rig.model.force_scale,
-        ..Sum::default()
-    };
+    let mut sum = Sum { force_scale: rig.model.force_scale, ..Sum::default() };
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some thousands
     let steps = (case.stop / size).round() as u32;
     for k in 0..steps {
@@ -189,17 +171,8 @@ fn works_losses_and_what_is_stored_add_up() {
         let (sum, stored, balance) = run(&case, 1e-8, 1e-7);
         let rest = sum.put_in - stored - sum.dissipated - balance;
         // What remains is the error of the trapezoidal rule, and rounding.
-        assert!(
-            rest.abs() < sum.uncertainty + 1e-12 * sum.turnover,
-            "{}: {rest:e} J",
-            case.name
-        );
-        assert!(
-            sum.uncertainty < 0.01 * sum.turnover,
-            "{}: {:e} J",
-            case.name,
-            sum.uncertainty
-        );
+        assert!(rest.abs() < sum.uncertainty + 1e-12 * sum.turnover, "{}: {rest:e} J", case.name);
+        assert!(sum.uncertainty < 0.01 * sum.turnover, "{}: {:e} J", case.name, sum.uncertainty);
     }
 }
 
@@ -228,17 +201,11 @@ fn friction_without_force_does_not_change_the_balance() {
         (scene.contact.overtravel, scene.pusher.position) = (-1e-4, 0.012);
         (scene.effects.pusher, scene.effects.friction) = (PusherKind::Prescribed, friction);
         (scene.friction.coefficient, scene.effects.energy) = (0.0, true);
-        let pressed = Inputs {
-            pusher_displacement: 3e-4,
-            ..Inputs::default()
-        };
+        let pressed = Inputs { pusher_displacement: 3e-4, ..Inputs::default() };
         let mut simulation = Simulation::new(&scene, &pressed, 0.0).unwrap();
         for k in 0..40 {
             let support_displacement = if k % 2 == 0 { 0.0 } else { -2e-7 };
-            let inputs = Inputs {
-                support_displacement,
-                ..pressed
-            };
+            let inputs = Inputs { support_displacement, ..pressed };
             simulation.step(&inputs, f64::from(k) * 2e-5, 2e-5).unwrap();
         }
         assert!(simulation.real(RealOutput::ContactLastOpening) > 0.0);

@@ -89,11 +89,7 @@ fn agree(scene: &Scene, end: End, allowed: f64) {
     let mut moving = Simulation::new(scene, &at(0.0, end), 0.0).unwrap();
     // Between both fixed contacts, of which the second is rigid, the spring takes from one gap what it gives the other.
     let gaps = |simulation: &Simulation| {
-        let outputs = [
-            RealOutput::StepMinimumGap,
-            RealOutput::ContactIndentation,
-            RealOutput::FixedDisplacement,
-        ];
+        let outputs = [RealOutput::StepMinimumGap, RealOutput::ContactIndentation, RealOutput::FixedDisplacement];
         let [gap, indentation, fixed] = outputs.map(|output| simulation.real(output));
         scene.effects.second_contact.then_some(gap - indentation + fixed)
     };

@@ -104,11 +104,7 @@ fn gravity_and_contact_force_bend_both_springs() {
 fn the_fixed_contact_moves_as_its_outputs_say() {
     let mut scene = on_spring(shaken(300.0, 700.0), 1.0, 1.5);
     scene.solver.tolerance = 1e-8;
-    let outputs = [
-        RealOutput::FixedDisplacement,
-        RealOutput::FixedVelocity,
-        RealOutput::TipDisplacement,
-    ];
+    let outputs = [RealOutput::FixedDisplacement, RealOutput::FixedVelocity, RealOutput::TipDisplacement];
     let (overtravel, step) = (scene.contact.overtravel, 1e-6);
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
     let (mut rows, mut furthest) = (Vec::new(), 0.0_f64);
@@ -131,9 +127,7 @@ fn the_fixed_contact_moves_as_its_outputs_say() {
         }
     }
     for (n, pair) in rows.windows(2).enumerate() {
-        let [[before, start, ..], [now, end, ..]] = pair else {
-            panic!()
-        };
+        let [[before, start, ..], [now, end, ..]] = pair else { panic!() };
         // The trapezoidal rule is wrong by the third derivative, a_max omega step^3 / 12.
         near(n, *now, before + 0.5 * step * (start + end), 1e-12);
     }
@@ -150,20 +144,13 @@ fn a_large_push_of_the_fixed_contact_bends_both_springs() {
     for push in [1e-3, -1e-4] {
         let before = simulation.motion().support().0;
         let rate = (push - before) / 1e-2;
-        simulation
-            .step(&supported(before, rate), simulation.time(), 1e-2)
-            .unwrap();
+        simulation.step(&supported(before, rate), simulation.time(), 1e-2).unwrap();
         simulation.step(&supported(push, 0.0), simulation.time(), 0.3).unwrap();
         let force = simulation.real(RealOutput::ContactForce);
         // That of the fixed contact has 4 times the stiffness.
         let given = 1.25 * per_force * force + (force / hertz).powf(2.0 / 3.0);
         close(push, given, scene.contact.overtravel + push, 1e-6);
-        close(
-            push,
-            simulation.real(RealOutput::TipDisplacement),
-            per_force * force,
-            1e-6,
-        );
+        close(push, simulation.real(RealOutput::TipDisplacement), per_force * force, 1e-6);
         let fixed = simulation.real(RealOutput::FixedDisplacement);
         close(push, fixed, -0.25 * per_force * force, 1e-6);
     }

@@ -75,10 +75,7 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
                     let pairs = [(force, expected.force), (displacement, expected.displacement)];
                     let error = pairs.map(|(value, expected)| (value - expected).norm() / expected.norm());
                     // The displacement of nanometres is read beside a deflection of 0.2 mm, whose rounding is 3e-20 m.
-                    assert!(
-                        error.iter().all(|error| *error < 1e-8),
-                        "{name}, {frequency} Hz, {law:?}: {error:?}"
-                    );
+                    assert!(error.iter().all(|error| *error < 1e-8), "{name}, {frequency} Hz, {law:?}: {error:?}");
                 }
             }
         }

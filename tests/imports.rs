@@ -50,21 +50,15 @@ fn names<'a>(text: &'a str, before: &'a str) -> impl Iterator<Item = &'a str> {
 /// The imports of all files; a call of a method that stands elsewhere than its type is one too, where the name of the method tells
 /// which it is.
 fn imports(texts: &Texts) -> Imports {
-    let mut imports: Imports = texts
-        .iter()
-        .map(|(own, text)| (own.clone(), imported(own, text)))
-        .collect();
+    let mut imports: Imports = texts.iter().map(|(own, text)| (own.clone(), imported(own, text))).collect();
     let mut homes: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (own, text) in texts {
         for name in names(text, "fn ") {
             homes.entry(name).or_default().push(own);
         }
     }
-    let defines = |text: &str, kind: &str| {
-        ["struct ", "enum "]
-            .iter()
-            .any(|what| names(text, what).any(|name| name == kind))
-    };
+    let defines =
+        |text: &str, kind: &str| ["struct ", "enum "].iter().any(|what| names(text, what).any(|name| name == kind));
     for (home, text) in texts {
         for block in text.split("\nimpl").skip(1) {
             let head = block.split('{').next().unwrap();
@@ -74,17 +68,13 @@ fn imports(texts: &Texts) -> Imports {
                 continue;
             }
             let body = block.split("\n}").next().unwrap();
-            for method in names(body, "    fn ")
-                .chain(names(body, ") fn "))
-                .chain(names(body, "pub fn "))
-            {
+            for method in names(body, "    fn ").chain(names(body, ") fn ")).chain(names(body, "pub fn ")) {
                 if homes.get(method).is_none_or(|homes| homes.len() > 1) {
                     continue;
                 }
                 let calls = [format!(".{method}("), format!("::{method}(")];
-                for (own, _) in texts
-                    .iter()
-                    .filter(|(own, text)| *own != home && calls.iter().any(|call| text.contains(call)))
+                for (own, _) in
+                    texts.iter().filter(|(own, text)| *own != home && calls.iter().any(|call| text.contains(call)))
                 {
                     imports.get_mut(own).unwrap().push(home.clone());
                 }
@@ -139,31 +129,16 @@ fn no_files_import_each_other_in_a_circle() {
 #[test]
 fn a_circle_is_found() {
     let found = |texts: &[(&str, &str)]| -> Vec<String> {
-        let texts = texts
-            .iter()
-            .map(|(own, text)| ((*own).to_owned(), (*text).to_owned()))
-            .collect();
+        let texts = texts.iter().map(|(own, text)| ((*own).to_owned(), (*text).to_owned())).collect();
         circles(&imports(&texts)).into_iter().map(str::to_owned).collect()
     };
-    let of_three = [
-        ("::a", "\nuse crate::b::{self, x};"),
-        ("::b::c", "\nuse crate::a::x;"),
-        ("::d", "\nuse crate::a;"),
-    ];
-    assert_eq!(
-        found(&[&of_three[..], &[("::b", "\nuse super::b::c;")]].concat()),
-        ["::a", "::b", "::b::c"]
-    );
+    let of_three =
+        [("::a", "\nuse crate::b::{self, x};"), ("::b::c", "\nuse crate::a::x;"), ("::d", "\nuse crate::a;")];
+    assert_eq!(found(&[&of_three[..], &[("::b", "\nuse super::b::c;")]].concat()), ["::a", "::b", "::b::c"]);
     assert_eq!(found(&[&of_three[..], &[("::b", "")]].concat()), [""; 0]);
     // A method that stands in a file of its own, which imports its type.
-    let kind = (
-        "::kind",
-        "\npub struct Kind;\nfn call(kind: &Kind) {\n    kind.spread();\n}\n",
-    );
-    let method = (
-        "::method",
-        "\nuse crate::kind::Kind;\nimpl Kind {\n    pub fn spread(&self) {}\n}\n",
-    );
+    let kind = ("::kind", "\npub struct Kind;\nfn call(kind: &Kind) {\n    kind.spread();\n}\n");
+    let method = ("::method", "\nuse crate::kind::Kind;\nimpl Kind {\n    pub fn spread(&self) {}\n}\n");
     assert_eq!(found(&[kind, method]), ["::kind", "::method"]);
     assert_eq!(found(&[(kind.0, "\npub struct Kind;\n"), method]), [""; 0]);
 }

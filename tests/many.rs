@@ -37,11 +37,7 @@ fn alone(scene: &SceneFile) -> Result<Vec<f64>, SceneError> {
     for (time, size) in scene.steps() {
         contact.step(&scene.inputs_over(time, size)?, time, size).unwrap();
     }
-    Ok(scene
-        .outputs
-        .iter()
-        .map(|variable| contact.output(variable).unwrap())
-        .collect())
+    Ok(scene.outputs.iter().map(|variable| contact.output(variable).unwrap()).collect())
 }
 
 fn bits(row: &[f64]) -> Vec<u64> {
@@ -90,10 +86,7 @@ fn what_others_have_left_changes_no_bit() {
         chatter(&[("beam.thickness", "1.1e-4")]),
         chatter(&[("communicationStep", "7e-5")]),
         scene("tapered-spring.toml", &[("stop", "2e-3")]),
-        scene(
-            "tapered-spring.toml",
-            &[("stop", "2e-3"), ("excitation.frequency", "300")],
-        ),
+        scene("tapered-spring.toml", &[("stop", "2e-3"), ("excitation.frequency", "300")]),
         scene("tapered-spring.toml", &[("stop", "2e-3"), ("tip.mass", "2e-6")]),
     ];
     let expected: Vec<_> = scenes.iter().map(|scene| bits(&alone(scene).unwrap())).collect();

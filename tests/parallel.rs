@@ -93,10 +93,7 @@ fn the_preload_of_both_follows_from_beam_formulas() {
         let [first, other] = [preload.force, preload.parallel_force];
         let deflection = |own: f64, across: f64| together * (own + across) + against * (own - across);
         let overtravel = scene.contact.overtravel;
-        let indentations = [
-            overtravel - deflection(first, other),
-            overtravel - offset - deflection(other, first),
-        ];
+        let indentations = [overtravel - deflection(first, other), overtravel - offset - deflection(other, first)];
         // To what the compliance of a spring of segments is rounded.
         let rounding = 1e-12 * overtravel;
         let found = [preload.indentation, preload.parallel_indentation];
@@ -181,11 +178,9 @@ fn the_circuit_is_interrupted_while_both_are_open() {
 /// does, anywhere in an integration step.
 #[test]
 fn the_greatest_resistance_of_both_is_that_of_instants_within_the_step() {
-    for (amplitude, frequency, offset) in [
-        (428.588_36, 1761.6964, 1e-6),
-        (427.509_85, 1814.7433, 1e-6),
-        (402.297_53, 1942.2115, -1e-6),
-    ] {
+    for (amplitude, frequency, offset) in
+        [(428.588_36, 1761.6964, 1e-6), (427.509_85, 1814.7433, 1e-6), (402.297_53, 1942.2115, -1e-6)]
+    {
         let mut scene = pair(shaken(amplitude, frequency));
         scene.effects.contact_law = ContactLawKind::Rough;
         scene.parallel.offset = offset;
@@ -215,10 +210,7 @@ fn each_conducts_by_its_own_stiffness() {
     for law in [ContactLawKind::Hertz, ContactLawKind::Rough] {
         scene.effects.contact_law = law;
         let (contact, parallel) = (&scene.contact, &scene.parallel);
-        let of_each = [
-            (contact.curvature_radius, contact.stiffness),
-            (parallel.curvature_radius, parallel.stiffness),
-        ];
+        let of_each = [(contact.curvature_radius, contact.stiffness), (parallel.curvature_radius, parallel.stiffness)];
         let conducts = |force: f64, (radius, stiffness): (f64, f64)| {
             let stiffness = match law {
                 ContactLawKind::Hertz => (6.0 * modulus.powi(2) * radius * force).cbrt(),
@@ -238,17 +230,11 @@ fn each_conducts_by_its_own_stiffness() {
         // Both have the same voltage, which heats the first by `T^2 = T_0^2 + V^2 / (4 L)`; the second circuit stays open.
         let mut heated = scene.clone();
         (heated.effects.heating, heated.effects.second_contact) = (true, true);
-        let inputs = Inputs {
-            contact_current: -10.0,
-            ..Inputs::default()
-        };
+        let inputs = Inputs { contact_current: -10.0, ..Inputs::default() };
         let started = Simulation::new(&heated, &inputs, 0.0).unwrap();
         let open = 1.0 / scene.resistance.open;
         let conductance = started.real(RealOutput::ContactConductance) - open;
-        let warm = scene
-            .environment
-            .temperature
-            .hypot(10.0 / conductance / 2.0 / 2.45e-8_f64.sqrt());
+        let warm = scene.environment.temperature.hypot(10.0 / conductance / 2.0 / 2.45e-8_f64.sqrt());
         close("K", started.real(RealOutput::ContactTemperature), warm, 1e-12);
         close("V", started.real(RealOutput::ContactVoltage), -10.0 / conductance, 1e-9);
         close("S", started.real(RealOutput::SecondConductance), open, 1e-15);
@@ -311,11 +297,7 @@ fn tongues_are_the_cantilever_beyond_the_fork() {
     scene.solver.modes = 12;
     let spring = |length: f64, [width, thickness]: [f64; 2], before: f64, fork_position: Option<f64>| Segments {
         segments: vec![segment(length, [width, 2e-3], [thickness, 8e-5])],
-        masses: vec![PointMass {
-            position: 11e-3 - before,
-            mass: 2e-5,
-            rotary_inertia: 0.0,
-        }],
+        masses: vec![PointMass { position: 11e-3 - before, mass: 2e-5, rotary_inertia: 0.0 }],
         contact_position: Some(15e-3 - before),
         fork_position,
         ..Segments::default()

@@ -124,10 +124,7 @@ fn steady(exponent: f64, motions: &[Steady]) {
         let allowed = if *z_c > 0.0 { 2e-6 } else { 2e-7 };
         for (found, expected) in [mean, f64::hypot(cosine, sine), open].into_iter().zip(expected) {
             let error = (found - expected).abs();
-            assert!(
-                error < allowed,
-                "{z} {z_c} {frequency} {level}: {found} against {expected}"
-            );
+            assert!(error < allowed, "{z} {z_c} {frequency} {level}: {found} against {expected}");
         }
     }
 }
@@ -159,11 +156,7 @@ fn contact_is_lost_at_the_level_of_the_harmonic_balance() {
             let start = 60.0 * TAU * units().0 / frequency;
             rig.run_to(&Inputs::default(), start).unwrap();
             rig.run_to(&Inputs::default(), 1.1 * start).unwrap();
-            assert_eq!(
-                rig.state.contact().last_opening > Some(start),
-                opens,
-                "{frequency} {factor}"
-            );
+            assert_eq!(rig.state.contact().last_opening > Some(start), opens, "{frequency} {factor}");
         }
     }
 }
@@ -194,10 +187,7 @@ fn free(exponent: f64, motions: &[[f64; 2]]) {
         launch(&mut rig, rate);
         rig.run_to(&Inputs::default(), 100.0 * period * time).unwrap();
         let late = rig.state.contact().approach / length / rate;
-        assert!(
-            late.abs() < 1e-6 * rate.max(1.0),
-            "{rate}: {late:e} after a hundred periods"
-        );
+        assert!(late.abs() < 1e-6 * rate.max(1.0), "{rate}: {late:e} after a hundred periods");
     }
 }
 
@@ -209,15 +199,11 @@ fn the_period_of_the_free_motion_grows_with_its_energy() {
 
 /// Variance of the rate under white noise, and what follows from it: standard deviation of the force, share of the time in
 /// which the contact is open, and losses of contact per unit of time.
-const NOISE_HERTZ: [(f64, [f64; 3]); 2] = [
-    (0.5, [0.676_496, 0.045_261, 0.025_536]),
-    (1.0, [0.909_326, 0.150_297, 0.059_960]),
-];
+const NOISE_HERTZ: [(f64, [f64; 3]); 2] =
+    [(0.5, [0.676_496, 0.045_261, 0.025_536]), (1.0, [0.909_326, 0.150_297, 0.059_960])];
 
-const NOISE_ROUGH: [(f64, [f64; 3]); 2] = [
-    (0.5, [0.682_131, 0.013_880, 0.007_831]),
-    (1.0, [0.930_239, 0.083_385, 0.033_266]),
-];
+const NOISE_ROUGH: [(f64, [f64; 3]); 2] =
+    [(0.5, [0.682_131, 0.013_880, 0.007_831]), (1.0, [0.930_239, 0.083_385, 0.033_266])];
 
 /// White noise, held for a fortieth of a period, so that its density at the resonance is lower by 0.2 %. The means of a
 /// hundred stretches tell the standard error. The mean force is the preload, whatever the noise.
@@ -255,10 +241,7 @@ fn noise(exponent: f64, levels: &[(f64, [f64; 3])]) {
             let squares: f64 = found.iter().map(|each| (each[k] - mean).powi(2)).sum();
             let error = (squares / (count * (count - 1.0))).sqrt();
             let deviation = (mean - exact).abs();
-            assert!(
-                deviation < 4.0 * error + 0.002 * exact,
-                "{heat} {k}: {mean} +- {error} against {exact}"
-            );
+            assert!(deviation < 4.0 * error + 0.002 * exact, "{heat} {k}: {mean} +- {error} against {exact}");
             assert!(error < 0.08 * exact, "{heat} {k}: {mean} +- {error}");
         }
     }

@@ -131,10 +131,7 @@ fn none_above_in_silence(judged: &[Judged], count: u64) {
     }
     let number = |is: fn(&Judged) -> bool| judged.iter().filter(|judged| is(judged)).count() as u64;
     let opening = number(|judged| judged.opens);
-    assert!(
-        opening > count / 3 && count - opening > count / 5,
-        "from {first}: {opening} open"
-    );
+    assert!(opening > count / 3 && count - opening > count / 5, "from {first}: {opening} open");
     let above = number(|judged| !judged.opens && judged.error > judged.tolerance);
     assert_eq!(above, 0, "from {first}: closed contacts above the tolerance");
     // Ill-conditioned ones may be above it, and above the estimate too, which is 1 at most, but not in silence.
@@ -145,10 +142,7 @@ fn none_above_in_silence(judged: &[Judged], count: u64) {
         };
         judged.error > judged.tolerance && !told
     });
-    assert!(
-        100 * silent < opening,
-        "from {first}: {silent} opening contacts above the tolerance in silence"
-    );
+    assert!(100 * silent < opening, "from {first}: {silent} opening contacts above the tolerance in silence");
     assert!(100 * number(|judged| judged.outcome == Outcome::NotRun) < 5 * count);
 }
 
@@ -240,9 +234,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
         (Relay::draw, &[10_144, 10_769, 10_244, 11_223, 11_483, 11_458, 11_976]),
         (
             kinds::friction,
-            &[
-                40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346, 40_345, 44_721,
-            ],
+            &[40_109, 40_148, 40_274, 40_282, 40_283, 40_375, 40_377, 40_462, 41_276, 41_346, 40_345, 44_721],
         ),
         (
             kinds::any,
@@ -293,23 +285,15 @@ fn a_touch_within_picoseconds_of_a_jump_is_not_missed() {
         let relay = draw(number);
         let (at_once, expected) = (events(&relay, relay.steps.0), events(&relay, 1e-13));
         assert_eq!(at_once.len(), expected.len(), "{number}: {at_once:?} {expected:?}");
-        assert!(
-            expected.windows(2).any(|pair| pair[1] - pair[0] < 1e-10),
-            "{number}: {expected:?}"
-        );
-        assert!(
-            largest_difference(&at_once, &expected) < 1e-10,
-            "{number}: {at_once:?} {expected:?}"
-        );
+        assert!(expected.windows(2).any(|pair| pair[1] - pair[0] < 1e-10), "{number}: {expected:?}");
+        assert!(largest_difference(&at_once, &expected) < 1e-10, "{number}: {at_once:?} {expected:?}");
     }
 }
 
 /// A hundred communication steps of `size` (s), the fixed contact moving at `speed` (m/s).
 fn course(scene: &Scene, tolerance: f64, speed: f64, size: f64) -> Course {
     let mut relay = Relay::of("moved", scene.clone(), (size, 100));
-    relay.knots = (0..100)
-        .map(|k| supported(speed * f64::from(k) * size, speed))
-        .collect();
+    relay.knots = (0..100).map(|k| supported(speed * f64::from(k) * size, speed)).collect();
     let (course, failure) = relay.run(|scene| scene.solver.tolerance = tolerance).unwrap();
     assert!(failure.is_none());
     course
@@ -333,10 +317,7 @@ fn the_advice_on_the_tolerance_holds_for_light_damping() {
         let pairs = found.iter().zip(&expected);
         for (force, expected) in pairs.filter(|(_, force)| **force > 0.66 * preload) {
             // Resistance varies as the force to the power -0.95.
-            assert!(
-                0.95 * (force / expected - 1.0).abs() < 0.01,
-                "{ratio}: {force} {expected} N"
-            );
+            assert!(0.95 * (force / expected - 1.0).abs() < 0.01, "{ratio}: {force} {expected} N");
         }
 
         let chatter = damped(shaken(800.0, 1000.0));
@@ -350,9 +331,6 @@ fn the_advice_on_the_tolerance_holds_for_light_damping() {
         closing.contact.damping = 1e-6;
         let [greatest, expected] = [1e-3, tight].map(|tolerance| course(&closing, tolerance, 0.06, 5e-5).greatest);
         let largest = expected.iter().fold(0.0_f64, |largest, force| largest.max(*force));
-        assert!(
-            largest > 0.0 && largest_difference(&greatest, &expected) < 1e-3 * largest,
-            "{ratio}"
-        );
+        assert!(largest > 0.0 && largest_difference(&greatest, &expected) < 1e-3 * largest, "{ratio}");
     }
 }

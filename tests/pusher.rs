@@ -17,10 +17,7 @@ fn pushed(mut scene: Scene) -> Scene {
 }
 
 fn at(pusher_displacement: f64) -> Inputs {
-    Inputs {
-        pusher_displacement,
-        ..Inputs::default()
-    }
+    Inputs { pusher_displacement, ..Inputs::default() }
 }
 
 /// Cantilever under forces at the tip and at the pusher (Timoshenko): deflections L^3 / (3 EI), x^2 (3 L - x) / (6 EI) and
@@ -92,10 +89,7 @@ fn a_pusher_at_the_tip_is_a_second_contact() {
         before = force;
         let scale = greatest.max(a.model().force_scale);
         near(time, push, force, 3.0 * tolerance * scale);
-        let (least, other) = (
-            a.real(RealOutput::StepMinimumPusherForce),
-            b.real(RealOutput::SecondMinimumForce),
-        );
+        let (least, other) = (a.real(RealOutput::StepMinimumPusherForce), b.real(RealOutput::SecondMinimumForce));
         near(time, least, other, 3.0 * tolerance * scale);
     }
     assert!(touches >= 4 && greatest > 0.1, "{touches} {greatest}");
@@ -139,10 +133,7 @@ fn the_frequency_is_that_of_free_motion() {
     let mut simulation = Simulation::new(&scene, &at(5e-4), 0.0).unwrap();
     let frequency = simulation.model().frequency;
     // A small push, and where the force passes its mean.
-    let push = Inputs {
-        base_acceleration: 1e-3,
-        ..at(5e-4)
-    };
+    let push = Inputs { base_acceleration: 1e-3, ..at(5e-4) };
     let (size, steps) = (0.02 / frequency, 2000);
     let force = simulation.real(RealOutput::ContactForce);
     let mut forces = vec![force];
@@ -165,10 +156,6 @@ fn the_frequency_is_that_of_free_motion() {
         c * c + s * s
     };
     let near: Vec<f64> = (-100..=100).map(|k| frequency * (1.0 + 1e-4 * f64::from(k))).collect();
-    let best = near
-        .iter()
-        .copied()
-        .max_by(|a, b| power(*a).total_cmp(&power(*b)))
-        .unwrap();
+    let best = near.iter().copied().max_by(|a, b| power(*a).total_cmp(&power(*b))).unwrap();
     assert!((best - frequency).abs() <= 2.1e-4 * frequency, "{best} {frequency}");
 }

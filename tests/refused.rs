@@ -56,10 +56,7 @@ fn on_soft_spring(scene: &mut Scene) {
 
 /// A spring given by a mode.
 fn with_mode(scene: &mut Scene, rotation: Option<f64>) {
-    let given = GivenMode {
-        rotation,
-        ..mode(1000.0, 150.0, 0.005)
-    };
+    let given = GivenMode { rotation, ..mode(1000.0, 150.0, 0.005) };
     scene.effects.axial_force = AxialForceKind::None;
     scene.spring = spring_file("own.toml", of_modes(1e-3, [given]));
 }
@@ -167,18 +164,9 @@ fn what_does_not_go_together_is_refused_with_names_and_values() {
     check(|scene| scene.effects.parallel_contact = true, PARALLEL_CONTACT);
     check(|scene| scene.effects.pusher = PusherKind::Prescribed, PUSHER);
     check(|scene| scene.effects.pusher = PusherKind::Armature, ARMATURE);
-    check(
-        |scene| scene.fixed_spring = uniform_spring(scene, 1.0, 1.0),
-        FIXED_SPRING,
-    );
-    check(
-        |scene| scene.effects.axial_force = AxialForceKind::Prescribed,
-        AXIAL_FORCE,
-    );
+    check(|scene| scene.fixed_spring = uniform_spring(scene, 1.0, 1.0), FIXED_SPRING);
+    check(|scene| scene.effects.axial_force = AxialForceKind::Prescribed, AXIAL_FORCE);
     check(|scene| with_mode(scene, None), SPRING_OF_MODES);
-    check(
-        |scene| scene.effects.excitation = ExcitationKind::Random,
-        RANDOM_ACCELERATION,
-    );
+    check(|scene| scene.effects.excitation = ExcitationKind::Random, RANDOM_ACCELERATION);
     check(|scene| scene.effects.resistance = ResistanceKind::None, NO_RESISTANCE);
 }

@@ -38,11 +38,7 @@ fn stiffness_gives_resistance() {
     let rough = of(&scene).unwrap();
     // Rho E* / k_r at F_r, and as k there. Spheres: `tests/python/test_effects_outputs.py`.
     let at_given = scene.resistance.resistivity * reduced_modulus(&scene.contact) / 4.37e4;
-    for (force, factor) in [
-        (0.152, 1.0),
-        (0.304, 2_f64.powf(0.54)),
-        (0.01, (0.01_f64 / 0.152).powf(0.54)),
-    ] {
+    for (force, factor) in [(0.152, 1.0), (0.304, 2_f64.powf(0.54)), (0.01, (0.01_f64 / 0.152).powf(0.54))] {
         let found = 1.0 / rough.conductance(force);
         assert!((found * factor / at_given - 1.0).abs() < 1e-9, "{found} at {force} N");
     }

@@ -85,10 +85,7 @@ fn errors_are_reported_with_their_line_and_what_is_allowed() {
         ("effects.chatter = \"false\"", "effects.chatter = \"false\": wrong type, allowed is true or false"),
     ];
     for (text, expected) in parameters {
-        assert_eq!(
-            message(&format!("[parameters]\n{text}\n")),
-            format!("line 5: {expected}")
-        );
+        assert_eq!(message(&format!("[parameters]\n{text}\n")), format!("line 5: {expected}"));
     }
     #[rustfmt::skip]
     let cases = [
@@ -220,10 +217,7 @@ fn between_rows_inputs_are_linear_and_beyond_them_held() -> Result<(), Box<dyn E
     assert_eq!((over.contact_current, over.contact_current_rate), (1.0, 1.0));
     // Over two the course between them would be lost.
     let passed = file.inputs_over(0.2, 0.6).unwrap_err().to_string();
-    assert!(
-        passed.contains("communicationStep = 0.6 s") && passed.contains("0.5 s"),
-        "{passed}"
-    );
+    assert!(passed.contains("communicationStep = 0.6 s") && passed.contains("0.5 s"), "{passed}");
     // Times of a recorder are rounded.
     assert!(file.inputs_over(0.25, 0.5).is_ok() && file.inputs_over(0.249, 0.502).is_ok());
     Ok(())
@@ -231,18 +225,10 @@ fn between_rows_inputs_are_linear_and_beyond_them_held() -> Result<(), Box<dyn E
 
 #[test]
 fn a_table_beside_the_run_is_refused() -> Result<(), Box<dyn Error>> {
-    for (rows, is_refused) in [
-        ("3600,0\n3600.1,1\n", true),
-        ("-2,0\n-1,1\n", true),
-        ("-1,0\n0.1,1\n", false),
-    ] {
+    for (rows, is_refused) in [("3600,0\n3600.1,1\n", true), ("-2,0\n-1,1\n", true), ("-1,0\n0.1,1\n", false)] {
         let file = with_table(&tempfile::tempdir()?, &format!("time,contact.current\n{rows}"), "");
         let refused = file.err().map(|error| error.to_string()).unwrap_or_default();
-        assert_eq!(
-            refused.contains("the run lasts from 0 to"),
-            is_refused,
-            "{rows}: {refused}"
-        );
+        assert_eq!(refused.contains("the run lasts from 0 to"), is_refused, "{rows}: {refused}");
     }
     Ok(())
 }

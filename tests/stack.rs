@@ -106,10 +106,7 @@ fn steps(contact: &Instance, mut time: f64) {
         let size = [1e-6, 1e-6, 1e-6, 2.5e-5, 1e-5, 1e-5][n % 6];
         if n % 12 < 6 {
             let acceleration = if n % 24 < 6 { 300.0 } else { -300.0 };
-            assert_eq!(
-                contact.set_reals(["base.acceleration", "contact.current"], [acceleration, 0.1]),
-                fmi2OK
-            );
+            assert_eq!(contact.set_reals(["base.acceleration", "contact.current"], [acceleration, 0.1]), fmi2OK);
         }
         if n % 12 == 9 {
             assert_eq!(contact.set_rates(["base.acceleration"], [1], [1e6]), fmi2OK);
@@ -117,14 +114,8 @@ fn steps(contact: &Instance, mut time: f64) {
         let status = contact.step(time, size);
         assert_eq!(status, fmi2OK, "at {time}: {:?}", contact.messages());
         time += size;
-        let outputs = [
-            "contact.force",
-            "contact.resistance",
-            "contact.slip",
-            "second.force",
-            "energy.balance",
-            "tip.velocity",
-        ];
+        let outputs =
+            ["contact.force", "contact.resistance", "contact.slip", "second.force", "energy.balance", "tip.velocity"];
         for name in outputs {
             contact.try_rate(name);
         }
@@ -144,10 +135,7 @@ fn save_and_restore(contact: &Instance) {
 /// The life of an instance that logs all: run, saved, restored, run on; reset, restored as it was, run on; failed, reset, run
 /// anew.
 fn live(scene: &Scene) {
-    let contact = Instance::with(&Arguments {
-        logging_on: true,
-        ..Arguments::default()
-    });
+    let contact = Instance::with(&Arguments { logging_on: true, ..Arguments::default() });
     let logging = unsafe { fmi2SetDebugLogging(contact.component, fmi2True, 0, ptr::null()) };
     assert_eq!(logging, fmi2OK);
     begin(&contact, scene);
@@ -178,13 +166,7 @@ fn read_files() {
     let (no_table, nested) = ("segment = 1\n", "{a = ".repeat(60) + "1" + &"}".repeat(60));
     let (list, keys) = ("segment = [{length = [1, 2]}]\n", vec!["a"; 70].join("."));
     let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/no-spring.toml");
-    for text in [
-        no_table,
-        list,
-        "[[segment]]\nlength = \"",
-        &format!("a = {nested}"),
-        &format!("{keys} = 1"),
-    ] {
+    for text in [no_table, list, "[[segment]]\nlength = \"", &format!("a = {nested}"), &format!("{keys} = 1")] {
         fs::write(file, text).unwrap();
         let contact = Instance::new();
         assert_eq!(contact.set_string("beam.file", file), fmi2Discard, "{text}");
@@ -225,9 +207,7 @@ fn whole_lives_take_less_than_the_bar() {
     let scenes = all();
     assert!(scenes.len() > 300, "{} can be combined", scenes.len());
     let most_of = |scenes: &[Scene]| {
-        let lives = scenes
-            .iter()
-            .map(|scene| (touched(&mut || live(scene)), format!("{:?}", scene.effects)));
+        let lives = scenes.iter().map(|scene| (touched(&mut || live(scene)), format!("{:?}", scene.effects)));
         lives.max().unwrap()
     };
     // On both processors.

@@ -24,9 +24,7 @@ impl Integrator for Component {
         let instantiated = start.elapsed();
         contact.set_scene(&scene);
         let check = |status: fmi2Status| {
-            (status == fmi2OK)
-                .then_some(())
-                .ok_or_else(|| Failure::Stopped(format!("{:?}", contact.messages())))
+            (status == fmi2OK).then_some(()).ok_or_else(|| Failure::Stopped(format!("{:?}", contact.messages())))
         };
         let start = ThreadTime::now();
         check(contact.setup(None, 0.0, None))?;

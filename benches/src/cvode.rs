@@ -27,11 +27,7 @@ impl Cvode {
         let program = self.0.as_ref().map_err(Clone::clone)?;
         let failed = |error: std::io::Error| Failure::Stopped(error.to_string());
         let mut command = Command::new(program);
-        let mut child = command
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .map_err(failed)?;
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(failed)?;
         if let Some(mut input) = child.stdin.take() {
             input.write_all(question.as_bytes()).map_err(failed)?;
         }
@@ -114,13 +110,7 @@ fn compile() -> Result<PathBuf, Failure> {
     let program = std::env::temp_dir().join(format!("relay-contact-cvode-{}", std::process::id()));
     let libraries = ["cvode", "sunmatrixdense", "sunlinsoldense", "nvecserial"];
     let libraries = libraries.map(|library| format!("-lsundials_{library}"));
-    let output = Command::new("cc")
-        .args(["-O3", "-o"])
-        .arg(&program)
-        .arg(source)
-        .args(libraries)
-        .arg("-lm")
-        .output();
+    let output = Command::new("cc").args(["-O3", "-o"]).arg(&program).arg(source).args(libraries).arg("-lm").output();
     match output {
         Ok(output) if output.status.success() => Ok(program),
         Ok(output) => {

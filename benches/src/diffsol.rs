@@ -25,15 +25,8 @@ impl Integrator for Diffsol {
 
     fn run(&self, problem: &Problem, tolerance: f64) -> Result<Run, Failure> {
         let start = ThreadTime::now();
-        let mut run = Run {
-            forces: vec![problem.model.preload.force],
-            ..Run::default()
-        };
-        let mut branch = Start {
-            time: 0.0,
-            state: vec![0.0; 2 * problem.modes()],
-            closed: problem.starts_closed(),
-        };
+        let mut run = Run { forces: vec![problem.model.preload.force], ..Run::default() };
+        let mut branch = Start { time: 0.0, state: vec![0.0; 2 * problem.modes()], closed: problem.starts_closed() };
         while run.forces.len() <= problem.cells as usize {
             let stopped = |error: &DiffsolError| Failure::Stopped(format!("t = {:.6e} s: {error}", branch.time));
             let next = Self::branch(problem, &branch, tolerance, start, &mut run).map_err(|error| stopped(&error))?;

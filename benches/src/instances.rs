@@ -83,10 +83,7 @@ pub fn costs(quick: bool) -> Result<String> {
             drop(first);
         }
         let [first, later, end] = least;
-        let _ = writeln!(
-            text,
-            "{name},{tolerance},{first:.3e},{later:.3e},{end:.3e},{started},{run}"
-        );
+        let _ = writeln!(text, "{name},{tolerance},{first:.3e},{later:.3e},{end:.3e},{started},{run}");
     }
     Ok(text)
 }

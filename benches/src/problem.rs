@@ -36,14 +36,7 @@ pub struct Problem {
 impl Problem {
     /// The problem of a scene.
     pub fn new(name: &'static str, scene: &Scene, support_rate: f64, end: f64, cells: u32) -> Result<Self, SceneError> {
-        Ok(Self {
-            name,
-            model: Model::new(scene, 0.0)?,
-            support_rate,
-            end,
-            cells,
-            relative: 1.0,
-        })
+        Ok(Self { name, model: Model::new(scene, 0.0)?, support_rate, end, cells, relative: 1.0 })
     }
 
     /// The same with a change of the scene.
@@ -83,9 +76,7 @@ impl Problem {
     /// Amplitude (m/s2), angular frequency (rad/s) and phase of the base acceleration; the scenes here start it at 0.
     /// Other waveforms panic.
     pub fn sine(&self) -> (f64, f64, f64) {
-        let Scene {
-            effects, excitation, ..
-        } = &self.model.scene;
+        let Scene { effects, excitation, .. } = &self.model.scene;
         match effects.excitation {
             ExcitationKind::None => (0.0, 0.0, 0.0),
             ExcitationKind::Sine => (excitation.amplitude, TAU * excitation.frequency, excitation.phase),
@@ -130,15 +121,7 @@ impl Problem {
     /// Force and derivatives on the branch.
     pub fn branch(&self, closed: bool, time: f64, state: &[f64]) -> Branch {
         let (d, rate) = self.indentation(time, state);
-        if closed {
-            self.model.law.closed_branch(d, rate)
-        } else {
-            Branch {
-                force: 0.0,
-                stiffness: 0.0,
-                damping: 0.0,
-            }
-        }
+        if closed { self.model.law.closed_branch(d, rate) } else { Branch { force: 0.0, stiffness: 0.0, damping: 0.0 } }
     }
 
     /// Contact force on the grid, N.

@@ -37,9 +37,7 @@ impl Reference {
         let (coarse_forces, coarse_events) = Motion::new(problem, step, GROWTH).run()?;
         let (forces, events) = Motion::new(problem, 0.5 * step, GROWTH.sqrt()).run()?;
         if coarse_events.len() != events.len() {
-            return Err(Failure::Stopped(
-                "the reference has another number of openings with halved steps".to_owned(),
-            ));
+            return Err(Failure::Stopped("the reference has another number of openings with halved steps".to_owned()));
         }
         Ok(Self {
             force_error: largest_difference(&coarse_forces, &forces) / problem.model.force_scale,
@@ -57,13 +55,8 @@ struct Tableau {
 }
 
 /// The zeros of `P_5 - P_4`, of Legendre's polynomials, moved from `[-1, 1]` to `[0, 1]`.
-const NODES: [f64; STAGES] = [
-    0.057_104_196_114_517_68,
-    0.276_843_013_638_123_8,
-    0.583_590_432_368_916_8,
-    0.860_240_135_656_219_5,
-    1.0,
-];
+const NODES: [f64; STAGES] =
+    [0.057_104_196_114_517_68, 0.276_843_013_638_123_8, 0.583_590_432_368_916_8, 0.860_240_135_656_219_5, 1.0];
 
 impl Tableau {
     /// The weights integrate powers of time, up to the fourth.
@@ -95,14 +88,7 @@ impl ModeMotion {
 /// The sum and its rounding error.
 fn compensated(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
-    (
-        sum,
-        if a.abs() > b.abs() {
-            b - (sum - a)
-        } else {
-            a - (sum - b)
-        },
-    )
+    (sum, if a.abs() > b.abs() { b - (sum - a) } else { a - (sum - b) })
 }
 
 /// A step computed but not yet taken.
@@ -159,10 +145,7 @@ impl<'a> Motion<'a> {
                     match self.trial(start + done, h) {
                         Some(trial) => break trial,
                         None if h < 1e-20 => {
-                            return Err(Failure::Stopped(format!(
-                                "reference: no solution at {:.9e} s",
-                                start + done
-                            )));
+                            return Err(Failure::Stopped(format!("reference: no solution at {:.9e} s", start + done)));
                         }
                         None => h *= 0.5,
                     }
@@ -271,11 +254,8 @@ impl<'a> Motion<'a> {
             compliance += a * per_force * mode.tip;
             free.push((dq, w));
         }
-        let forces = if self.closed {
-            self.forces(&d, &rate, &compliance, &mobility)?
-        } else {
-            ones * -model.preload.force
-        };
+        let forces =
+            if self.closed { self.forces(&d, &rate, &compliance, &mobility)? } else { ones * -model.preload.force };
         let end = STAGES - 1;
         let modes = model.modes.iter().zip(&inverses).zip(free);
         let changes = modes
@@ -284,11 +264,7 @@ impl<'a> Motion<'a> {
                 (dq[end] + (a * from_force)[end], w[end] + from_force[end])
             })
             .collect();
-        Some(Trial {
-            changes,
-            d: d - compliance * forces,
-            rate: rate - mobility * forces,
-        })
+        Some(Trial { changes, d: d - compliance * forces, rate: rate - mobility * forces })
     }
 
     /// Contact forces at the stages, as deviation from the preload force.

@@ -102,15 +102,9 @@ pub fn measure(quick: bool, turns: usize) -> Result<String> {
             ),
             Err(_) => ",,,,,,,".to_owned(),
         };
-        let outcome = row.as_ref().map_or_else(
-            |failure| failure.to_string().replace([',', '\n'], " "),
-            |_| "ok".to_owned(),
-        );
-        let Reference {
-            force_error,
-            event_error,
-            ..
-        } = *case.reference;
+        let outcome =
+            row.as_ref().map_or_else(|failure| failure.to_string().replace([',', '\n'], " "), |_| "ok".to_owned());
+        let Reference { force_error, event_error, .. } = *case.reference;
         let _ = writeln!(
             text,
             "{},{},{name},{:e},{modes},{measured},{force_error:.4e},{},{outcome}",
@@ -172,10 +166,7 @@ fn best(
     let mut found: Vec<(Case, Measured)> = Vec::new();
     for modes in MODES.into_iter().step_by(if quick { 3 } else { 1 }) {
         for relative in [1.0, 0.01] {
-            let problem = Rc::new(Problem {
-                relative,
-                ..problem.with_modes(modes)?
-            });
+            let problem = Rc::new(Problem { relative, ..problem.with_modes(modes)? });
             let mut least = [f64::INFINITY; 2];
             let mut idle = 0;
             for tolerance in tolerances(quick, 2) {
@@ -209,19 +200,13 @@ fn best(
         }
     }
     let beaten = |one: &Measured| found.iter().any(|(_, other)| other.beats(one, NEARLY));
-    Ok(found
-        .iter()
-        .filter(|(_, one)| !beaten(one))
-        .map(|(case, _)| case.clone())
-        .collect())
+    Ok(found.iter().filter(|(_, one)| !beaten(one)).map(|(case, _)| case.clone()).collect())
 }
 
 /// So many in a decade, from 1e-1 to 1e-11.
 fn tolerances(quick: bool, parts: u32) -> impl Iterator<Item = f64> {
     let digits = move |step: u32| f64::from(step) / f64::from(parts);
-    (parts..=11 * parts)
-        .step_by(if quick { 3 * parts as usize } else { 1 })
-        .map(move |step| 10_f64.powf(-digits(step)))
+    (parts..=11 * parts).step_by(if quick { 3 * parts as usize } else { 1 }).map(move |step| 10_f64.powf(-digits(step)))
 }
 
 /// Runs all cases in rounds.
@@ -231,10 +216,7 @@ fn rounds(cases: &[Case], turns: usize) -> Vec<Result<Measured, Failure>> {
     for turn in 1..=turns {
         eprintln!("round {turn} of {turns}: {} runs", cases.len());
         for ((case, times), first) in cases.iter().zip(&mut times).zip(&mut first) {
-            if first
-                .as_ref()
-                .is_some_and(|known| known.as_ref().map_or(true, |run| run.time > LONG))
-            {
+            if first.as_ref().is_some_and(|known| known.as_ref().map_or(true, |run| run.time > LONG)) {
                 continue;
             }
             let mut spent = 0.0;
@@ -248,9 +230,7 @@ fn rounds(cases: &[Case], turns: usize) -> Vec<Result<Measured, Failure>> {
     }
     let rows = cases.iter().zip(times).zip(first);
     rows.map(|((case, times), first)| {
-        first
-            .unwrap_or_else(|| Err(Failure::Stopped("not run".to_owned())))
-            .and_then(|run| judge(case, &run, times))
+        first.unwrap_or_else(|| Err(Failure::Stopped("not run".to_owned()))).and_then(|run| judge(case, &run, times))
     })
     .collect()
 }

@@ -12,11 +12,7 @@ pub static LIBRARY: LazyLock<Api> = LazyLock::new(|| {
     let program = std::env::current_exe().expect("a program");
     let folder = program.parent().expect("a folder");
     let name = format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}");
-    let path = if folder.ends_with("deps") {
-        folder.join(name)
-    } else {
-        folder.join("deps").join(name)
-    };
+    let path = if folder.ends_with("deps") { folder.join(name) } else { folder.join("deps").join(name) };
     Api::load(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 });
 

@@ -187,12 +187,7 @@ impl Call {
         let excitation = vec![(DESCRIPTION.reference("effects.excitation"), 2.0)];
         let amplitude = vec![(DESCRIPTION.reference("excitation.amplitude"), amplitude)];
         let [enter, exit] = Self::INITIALISE;
-        [
-            Self::set(Kind::Integer, excitation),
-            Self::set_reals(amplitude),
-            enter,
-            exit,
-        ]
+        [Self::set(Kind::Integer, excitation), Self::set_reals(amplitude), enter, exit]
     }
 
     /// Reads variables; pointers are valid, as in all functions below.

@@ -74,11 +74,7 @@ impl Description {
     pub fn parse(xml: &str) -> Self {
         let document = Document::parse(xml).expect("modelDescription.xml is XML");
         let element = |name| document.descendants().find(|node| node.has_tag_name(name));
-        let children = |name| {
-            element(name)
-                .into_iter()
-                .flat_map(|node| node.children().filter(Node::is_element))
-        };
+        let children = |name| element(name).into_iter().flat_map(|node| node.children().filter(Node::is_element));
         let choices = |name: &str| {
             children("TypeDefinitions")
                 .filter(|definition| definition.attribute("name") == Some(name))
@@ -89,17 +85,13 @@ impl Description {
         Self {
             guid: document.root_element().attribute("guid").unwrap_or_default().to_owned(),
             variables: children("ModelVariables").map(|node| variable(node, choices)).collect(),
-            categories: children("LogCategories")
-                .filter_map(|node| Some(node.attribute("name")?.to_owned()))
-                .collect(),
+            categories: children("LogCategories").filter_map(|node| Some(node.attribute("name")?.to_owned())).collect(),
         }
     }
 
     /// The index of a variable.
     pub fn position(&self, reference: u32) -> Option<usize> {
-        self.variables
-            .iter()
-            .position(|variable| variable.reference == reference)
+        self.variables.iter().position(|variable| variable.reference == reference)
     }
 
     /// The variable of a reference.
@@ -110,9 +102,7 @@ impl Description {
     /// The reference of a name.
     pub fn reference(&self, name: &str) -> u32 {
         let variable = self.variables.iter().find(|variable| variable.name == name);
-        variable
-            .unwrap_or_else(|| panic!("modelDescription.xml has no variable {name}"))
-            .reference
+        variable.unwrap_or_else(|| panic!("modelDescription.xml has no variable {name}")).reference
     }
 
     /// The references of the outputs of a type.
@@ -131,9 +121,9 @@ fn variable<'a>(node: Node<'a, 'a>, choices: impl Fn(&str) -> Vec<f64>) -> Varia
     let attribute = |name| node.attribute(name).unwrap_or_default();
     let value = node.first_element_child().expect("a variable has a type");
     let number = |name, default| {
-        value.attribute(name).map_or(default, |text| {
-            text.parse().unwrap_or_else(|_| f64::from(u8::from(text == "true")))
-        })
+        value
+            .attribute(name)
+            .map_or(default, |text| text.parse().unwrap_or_else(|_| f64::from(u8::from(text == "true"))))
     };
     let kind = match value.tag_name().name() {
         "Real" => Kind::Real,
@@ -143,9 +133,7 @@ fn variable<'a>(node: Node<'a, 'a>, choices: impl Fn(&str) -> Vec<f64>) -> Varia
     };
     Variable {
         name: attribute("name").to_owned(),
-        reference: attribute("valueReference")
-            .parse()
-            .expect("a value reference is a number"),
+        reference: attribute("valueReference").parse().expect("a value reference is a number"),
         kind,
         role: match attribute("causality") {
             "input" => Role::Input,

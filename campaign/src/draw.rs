@@ -83,11 +83,7 @@ fn anything(choices: &mut Choices, now: &Moment) -> Call {
 
 /// A fault of the pointers, mostly none.
 fn fault(choices: &mut Choices) -> Fault {
-    if choices.percent(2) {
-        choices.one(&Fault::ALL)
-    } else {
-        Fault::None
-    }
+    if choices.percent(2) { choices.one(&Fault::ALL) } else { Fault::None }
 }
 
 fn logging(choices: &mut Choices) -> Call {
@@ -98,11 +94,7 @@ fn logging(choices: &mut Choices) -> Call {
         1 => Some("log%sAll".to_owned()),
         _ => Some(known[choices.below(known.len())].clone()),
     };
-    Call::SetDebugLogging(
-        choices.percent(50),
-        (0..count).map(|_| category(choices)).collect(),
-        fault(choices),
-    )
+    Call::SetDebugLogging(choices.percent(50), (0..count).map(|_| category(choices)).collect(), fault(choices))
 }
 
 fn setup(choices: &mut Choices) -> Call {
@@ -112,18 +104,8 @@ fn setup(choices: &mut Choices) -> Call {
     let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, start - 1.0];
     Call::SetupExperiment(
         choices.percent(50).then_some(tolerance),
-        if choices.percent(3) {
-            choices.one(&strange[..3])
-        } else {
-            start
-        },
-        choices.percent(30).then(|| {
-            if choices.percent(5) {
-                choices.one(&strange)
-            } else {
-                stop
-            }
-        }),
+        if choices.percent(3) { choices.one(&strange[..3]) } else { start },
+        choices.percent(30).then(|| if choices.percent(5) { choices.one(&strange) } else { stop }),
     )
 }
 
@@ -135,11 +117,7 @@ fn reference(choices: &mut Choices, wanted: impl Fn(&Variable) -> bool) -> u32 {
     if choices.percent(2) {
         return DESCRIPTION.variables[choices.below(DESCRIPTION.variables.len())].reference;
     }
-    let fitting: Vec<_> = DESCRIPTION
-        .variables
-        .iter()
-        .filter(|variable| wanted(variable))
-        .collect();
+    let fitting: Vec<_> = DESCRIPTION.variables.iter().filter(|variable| wanted(variable)).collect();
     match fitting.get(choices.below(fitting.len())) {
         Some(variable) => variable.reference,
         None => choices.bits(),
@@ -153,11 +131,7 @@ fn get(choices: &mut Choices, now: &Moment) -> Call {
     let wanted = |variable: &Variable| variable.kind == kind && !(before && variable.role == Role::Output);
     let count = choices.below(4);
     let count = if before && kind == Kind::Boolean { 0 } else { count };
-    Call::Get(
-        kind,
-        (0..count).map(|_| reference(choices, wanted)).collect(),
-        fault(choices),
-    )
+    Call::Get(kind, (0..count).map(|_| reference(choices, wanted)).collect(), fault(choices))
 }
 
 fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
@@ -179,16 +153,7 @@ fn value(choices: &mut Choices, reference: u32) -> f64 {
         return choices.unit();
     };
     let Variable { start, min, max, .. } = *variable;
-    let strange = [
-        f64::NAN,
-        f64::INFINITY,
-        f64::NEG_INFINITY,
-        max * 1.5 + 1.0,
-        min - 1.0,
-        1e306,
-        -1e306,
-        5e-324,
-    ];
+    let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, max * 1.5 + 1.0, min - 1.0, 1e306, -1e306, 5e-324];
     let pick = choices.below(100);
     if pick < 4 {
         return choices.one(&strange);
@@ -212,11 +177,7 @@ fn value(choices: &mut Choices, reference: u32) -> f64 {
         20..30 => nominal * 10_f64.powf(2.0 * choices.unit() - 1.0),
         _ => nominal * (0.8 + 0.4 * choices.unit()),
     };
-    if variable.kind == Kind::Real {
-        value
-    } else {
-        value.round()
-    }
+    if variable.kind == Kind::Real { value } else { value.round() }
 }
 
 fn step(choices: &mut Choices) -> Call {
@@ -227,12 +188,7 @@ fn step(choices: &mut Choices) -> Call {
     };
     let point = match choices.below(100) {
         0 => Point::Off(choices.one(&[-1.0, 1.0, 0.01, -0.3, 2e-5, -2e-5])),
-        1 => choices.one(&[
-            Point::At(f64::NAN),
-            Point::At(f64::INFINITY),
-            Point::At(1e300),
-            Point::At(-1.0),
-        ]),
+        1 => choices.one(&[Point::At(f64::NAN), Point::At(f64::INFINITY), Point::At(1e300), Point::At(-1.0)]),
         2..8 => Point::Rounded(choices.one(&[-2, -1, 1, 2])),
         _ => Point::Here,
     };

@@ -23,41 +23,23 @@ pub const SPECIMENS: [&[(Kind, &str, f64)]; 8] = [
     &[],
     &[(Kind::String, "beam.file", 1.0)],
     &[(Kind::Integer, "effects.friction", 2.0)],
-    &[
-        (Kind::Integer, "effects.friction", 2.0),
-        (Kind::Boolean, "effects.contactDamping", 0.0),
-    ],
-    &[
-        (Kind::Boolean, "effects.secondContact", 1.0),
-        (Kind::Real, "second.gap", 1e-6),
-    ],
-    &[
-        (Kind::Integer, "effects.axialForce", 3.0),
-        (Kind::Boolean, "effects.energy", 1.0),
-    ],
+    &[(Kind::Integer, "effects.friction", 2.0), (Kind::Boolean, "effects.contactDamping", 0.0)],
+    &[(Kind::Boolean, "effects.secondContact", 1.0), (Kind::Real, "second.gap", 1e-6)],
+    &[(Kind::Integer, "effects.axialForce", 3.0), (Kind::Boolean, "effects.energy", 1.0)],
     &[(Kind::Integer, "effects.contactLaw", 3.0)],
-    &[
-        (Kind::Integer, "effects.excitation", 5.0),
-        (Kind::Real, "beam.stiffnessDamping", 0.0),
-    ],
+    &[(Kind::Integer, "effects.excitation", 5.0), (Kind::Real, "beam.stiffnessDamping", 0.0)],
 ];
 
 /// The serialized state of a contact under sine excitation that has opened.
 pub fn specimen(api: &Api, parameters: &[(Kind, &str, f64)]) -> Vec<u8> {
-    let parameters = parameters
-        .iter()
-        .map(|&(kind, name, value)| Call::set(kind, vec![(DESCRIPTION.reference(name), value)]));
+    let parameters =
+        parameters.iter().map(|&(kind, name, value)| Call::set(kind, vec![(DESCRIPTION.reference(name), value)]));
     let [excitation, amplitude, enter, exit] = Call::shaken(400.0);
     let mut judge = Judge::new(api);
     let steps = [1e-3, 1.3e-6, 1.3e-6].map(Call::step);
     let bytes = [Call::save(0), Call::serialize(0)];
-    let calls: Vec<_> = [excitation, amplitude]
-        .into_iter()
-        .chain(parameters)
-        .chain([enter, exit])
-        .chain(steps)
-        .chain(bytes)
-        .collect();
+    let calls: Vec<_> =
+        [excitation, amplitude].into_iter().chain(parameters).chain([enter, exit]).chain(steps).chain(bytes).collect();
     judge.run(&calls).expect("the specimen runs");
     judge.importer.bytes(0).clone()
 }

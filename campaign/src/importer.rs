@@ -35,19 +35,10 @@ impl<'a> Importer<'a> {
     pub fn new(api: &'a Api) -> Self {
         let log = Box::new(Log::default());
         let component = instantiate(api, &log);
-        assert!(
-            !component.is_null(),
-            "no instance: is the library from the same build as the tests? {log:?}"
-        );
+        assert!(!component.is_null(), "no instance: is the library from the same build as the tests? {log:?}");
         let states = [ptr::null_mut(); SLOTS];
         let bytes = [const { Vec::new() }; SLOTS];
-        Self {
-            api,
-            component,
-            states,
-            bytes,
-            log,
-        }
+        Self { api, component, states, bytes, log }
     }
 
     /// The messages since the last call of this function.
@@ -68,15 +59,10 @@ impl<'a> Importer<'a> {
                 Call::SetDebugLogging(on, categories, fault) => {
                     let texts: Vec<_> = categories
                         .iter()
-                        .map(|text| {
-                            text.as_ref()
-                                .map(|text| CString::new(text.as_str()).unwrap_or_default())
-                        })
+                        .map(|text| text.as_ref().map(|text| CString::new(text.as_str()).unwrap_or_default()))
                         .collect();
-                    let pointers: Vec<_> = texts
-                        .iter()
-                        .map(|text| text.as_ref().map_or(ptr::null(), |text| text.as_ptr()))
-                        .collect();
+                    let pointers: Vec<_> =
+                        texts.iter().map(|text| text.as_ref().map_or(ptr::null(), |text| text.as_ptr())).collect();
                     let (_, pointer, count) = arguments(*fault, &pointers, &pointers);
                     (api.fmi2SetDebugLogging)(c, (*on).into(), count, pointer)
                 }
@@ -154,12 +140,7 @@ impl<'a> Importer<'a> {
                 let (status, texts) = self.read(api.fmi2GetString, read, ptr::null());
                 let known = texts.iter().filter(|text| !text.is_null());
                 // The strings stay valid until the next call.
-                (
-                    status,
-                    known
-                        .map(|text| texts::number(unsafe { CStr::from_ptr(*text) }))
-                        .collect(),
-                )
+                (status, known.map(|text| texts::number(unsafe { CStr::from_ptr(*text) })).collect())
             }
         }
     }
@@ -213,11 +194,7 @@ impl<'a> Importer<'a> {
                 Call::SetState(slot, fault) => (api.fmi2SetFMUstate)(c, state(slot, fault)),
                 Call::StateSize(slot, fault) => {
                     let mut size = 0;
-                    let place = if fault == Fault::LastNull {
-                        ptr::null_mut()
-                    } else {
-                        &raw mut size
-                    };
+                    let place = if fault == Fault::LastNull { ptr::null_mut() } else { &raw mut size };
                     let status = (api.fmi2SerializedFMUstateSize)(c, state(slot, fault), place);
                     return (status, vec![size as f64]);
                 }
@@ -279,14 +256,12 @@ impl<'a> Importer<'a> {
             match function {
                 StatusFunction::Status => ((api.fmi2GetStatus)(c, kind, place(fault, &mut status)), Vec::new()),
                 StatusFunction::Real => ((api.fmi2GetRealStatus)(c, kind, place(fault, &mut real)), vec![real]),
-                StatusFunction::Integer => (
-                    (api.fmi2GetIntegerStatus)(c, kind, place(fault, &mut integer)),
-                    Vec::new(),
-                ),
-                StatusFunction::Boolean => (
-                    (api.fmi2GetBooleanStatus)(c, kind, place(fault, &mut integer)),
-                    vec![f64::from(integer)],
-                ),
+                StatusFunction::Integer => {
+                    ((api.fmi2GetIntegerStatus)(c, kind, place(fault, &mut integer)), Vec::new())
+                }
+                StatusFunction::Boolean => {
+                    ((api.fmi2GetBooleanStatus)(c, kind, place(fault, &mut integer)), vec![f64::from(integer)])
+                }
                 StatusFunction::String => ((api.fmi2GetStringStatus)(c, kind, place(fault, &mut text)), Vec::new()),
             }
         }
@@ -317,9 +292,6 @@ pub fn damaged(bytes: &[u8], damage: Damage) -> Vec<u8> {
 
 /// A new instance with the GUID of the description.
 fn instantiate(api: &Api, log: &Log) -> fmi2Component {
-    let arguments = Arguments {
-        guid: Some(&DESCRIPTION.guid),
-        ..Arguments::default()
-    };
+    let arguments = Arguments { guid: Some(&DESCRIPTION.guid), ..Arguments::default() };
     arguments.instantiate(api.fmi2Instantiate, Some(&callbacks(log)))
 }

@@ -25,13 +25,7 @@ pub struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     pub fn new(api: &'a Api) -> Self {
-        Self {
-            importer: Importer::new(api),
-            life: LifeCycle::default(),
-            calls: 0,
-            steps: 0,
-            met: BTreeSet::new(),
-        }
+        Self { importer: Importer::new(api), life: LifeCycle::default(), calls: 0, steps: 0, met: BTreeSet::new() }
     }
 
     /// Makes calls, up to the first wrong answer.
@@ -40,13 +34,7 @@ impl<'a> Judge<'a> {
     }
 
     pub fn call(&mut self, call: &Call) -> Result<(), String> {
-        if let Call::Replay {
-            slot,
-            inputs,
-            steps,
-            size,
-        } = call
-        {
+        if let Call::Replay { slot, inputs, steps, size } = call {
             return self.replay(*slot, inputs, *steps, *size);
         }
         self.learn_whether_it_fits(call)?;
@@ -67,9 +55,7 @@ impl<'a> Judge<'a> {
         let messages = self.importer.messages();
         if !verdict.statuses().contains(&status) {
             let phase = self.life.now.phase;
-            return Err(format!(
-                "{call:?} in {phase:?}: status {status}, expected {verdict:?}; {messages:?}"
-            ));
+            return Err(format!("{call:?} in {phase:?}: status {status}, expected {verdict:?}; {messages:?}"));
         }
         let (logged, category, shown) = match status {
             fmi2OK => (fmi2Warning, "logStatusWarning", self.life.warnings),
@@ -77,10 +63,8 @@ impl<'a> Judge<'a> {
             _ => (status, "logStatusError", self.life.errors),
         };
         let expected = if status == fmi2OK { verdict.warns() } else { Some(true) };
-        let about_status: Vec<_> = messages
-            .iter()
-            .filter(|message| message.category.starts_with("logStatus"))
-            .collect();
+        let about_status: Vec<_> =
+            messages.iter().filter(|message| message.category.starts_with("logStatus")).collect();
         let right = match about_status[..] {
             [] => !shown || expected != Some(true),
             [told] => {
@@ -98,9 +82,7 @@ impl<'a> Judge<'a> {
         if right {
             Ok(((status, values), status == fmi2OK && !about_status.is_empty()))
         } else {
-            Err(format!(
-                "{call:?}: status {status}, but the messages are {messages:?} (shown: {shown})"
-            ))
+            Err(format!("{call:?}: status {status}, but the messages are {messages:?} (shown: {shown})"))
         }
     }
 
@@ -155,13 +137,7 @@ impl<'a> Judge<'a> {
         if moves && readable {
             let outputs = self.outputs()?;
             let anew = matches!(call, Call::DoStep(..) | Call::ExitInitializationMode) && status == fmi2OK;
-            if let Some(before) = self
-                .life
-                .now
-                .outputs
-                .as_ref()
-                .filter(|before| !anew && **before != outputs)
-            {
+            if let Some(before) = self.life.now.outputs.as_ref().filter(|before| !anew && **before != outputs) {
                 return Err(format!("{call:?}: outputs were {before:x?}, are {outputs:x?}"));
             }
             self.life.now.outputs = Some(outputs);
@@ -208,10 +184,6 @@ impl<'a> Judge<'a> {
             Ok::<_, String>(trace)
         };
         let (first, second) = (run()?, run()?);
-        if first == second {
-            Ok(())
-        } else {
-            Err(format!("a replay differs: {first:x?}\n{second:x?}"))
-        }
+        if first == second { Ok(()) } else { Err(format!("a replay differs: {first:x?}\n{second:x?}")) }
     }
 }

@@ -139,11 +139,7 @@ impl LifeCycle {
                     three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)));
                 let higher = values.iter().any(|&(_, order, _)| order > 1);
                 // The first time.
-                if verdict == Accept && higher {
-                    AcceptOrRemark
-                } else {
-                    verdict
-                }
+                if verdict == Accept && higher { AcceptOrRemark } else { verdict }
             }
             Call::GetOutputDerivatives(values, fault) => {
                 let judge = |&(reference, order): &(u32, i32)| {
@@ -167,18 +163,8 @@ impl LifeCycle {
                 self.held(*slot, *fault, &[Fault::LastNull, Fault::Endless, Fault::NullAndEndless])
             }
             Call::Deserialize(slot, damage, fault) => {
-                let wrong = [
-                    Fault::FirstNull,
-                    Fault::LastNull,
-                    Fault::Foreign,
-                    Fault::Endless,
-                    Fault::NullAndEndless,
-                ];
-                if *damage == Damage::None && self.written[*slot].is_some() {
-                    no_fault(*fault, &wrong)
-                } else {
-                    Fail
-                }
+                let wrong = [Fault::FirstNull, Fault::LastNull, Fault::Foreign, Fault::Endless, Fault::NullAndEndless];
+                if *damage == Damage::None && self.written[*slot].is_some() { no_fault(*fault, &wrong) } else { Fail }
             }
             Call::Replay { .. } => unreachable!("a replay consists of other calls"),
         }
@@ -191,11 +177,7 @@ impl LifeCycle {
 
     fn held(&self, slot: usize, fault: Fault, also: &[Fault]) -> Verdict {
         let wrong = [Fault::FirstNull, Fault::Foreign, Fault::Misaligned].contains(&fault);
-        if wrong || self.saved[slot].is_none() {
-            Fail
-        } else {
-            no_fault(fault, also)
-        }
+        if wrong || self.saved[slot].is_none() { Fail } else { no_fault(fault, also) }
     }
 
     fn get(&self, kind: Kind, references: &[u32]) -> Verdict {
@@ -246,11 +228,7 @@ impl LifeCycle {
             return Fail;
         }
         let ordinary = ORDINARY_STEPS.contains(&size) && late <= 0.0 && !self.now.extreme && !self.now.pushed_hard();
-        match (
-            ordinary,
-            off <= 4.0 * rounding,
-            is_off(off, rounding, size) && off < 9e-5 * size,
-        ) {
+        match (ordinary, off <= 4.0 * rounding, is_off(off, rounding, size) && off < 9e-5 * size) {
             (true, true, _) => AcceptOrRemark,
             (true, false, true) if self.warned => AcceptOrRemark,
             (true, false, true) => Remark,
@@ -305,12 +283,7 @@ impl LifeCycle {
                 *now = Moment::default();
                 (self.errors, self.warnings, self.warned) = (true, true, false);
             }
-            Call::Renew => {
-                *self = Self {
-                    written: std::mem::take(&mut self.written),
-                    ..Self::default()
-                }
-            }
+            Call::Renew => *self = Self { written: std::mem::take(&mut self.written), ..Self::default() },
             Call::Set(kind, values, _) => {
                 for &(reference, value) in values {
                     if let Some(position) = DESCRIPTION.position(reference) {
@@ -334,11 +307,7 @@ impl LifeCycle {
                 let (end, off) = (point + size, (point - now.time).abs());
                 let rounding = f64::EPSILON * point.abs().max(end.abs());
                 // The length of the step is rounded.
-                now.time = if is_off(off, rounding, *size) {
-                    now.time + (end - now.time)
-                } else {
-                    end
-                };
+                now.time = if is_off(off, rounding, *size) { now.time + (end - now.time) } else { end };
                 self.now.extreme |= self.now.pushed_hard();
                 self.now.rates.fill(0.0);
             }
@@ -413,9 +382,5 @@ fn logging(categories: &[Option<String>], fault: Fault) -> Verdict {
         return Fail;
     }
     let known = |category: &String| DESCRIPTION.categories.contains(category);
-    if categories.iter().flatten().all(known) {
-        Accept
-    } else {
-        Remark
-    }
+    if categories.iter().flatten().all(known) { Accept } else { Remark }
 }

@@ -44,9 +44,7 @@ impl Default for Moment {
 impl Moment {
     /// The value of an input or parameter.
     pub fn value(&self, reference: u32) -> f64 {
-        DESCRIPTION
-            .position(reference)
-            .map_or(f64::NAN, |position| self.values[position])
+        DESCRIPTION.position(reference).map_or(f64::NAN, |position| self.values[position])
     }
 
     /// Whether inputs and parameters have their start values.
@@ -58,9 +56,7 @@ impl Moment {
     /// Whether the inputs exceed the ranges of the generated excitation.
     pub fn pushed_hard(&self) -> bool {
         let acceleration = DESCRIPTION.reference("base.acceleration");
-        let rate = DESCRIPTION
-            .position(acceleration)
-            .map_or(0.0, |position| self.rates[position]);
+        let rate = DESCRIPTION.position(acceleration).map_or(0.0, |position| self.rates[position]);
         self.value(acceleration).abs() > 1e6 || rate.abs() > 1e12
     }
 }

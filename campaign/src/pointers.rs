@@ -23,11 +23,7 @@ pub fn places<A, B>(fault: Fault, first: &[A], last: &mut [B]) -> (*const A, *mu
     let (first, wrong, count) = arguments(fault, first, last);
     // The address as `arguments` made it, from the pointer that may be written through.
     let moved = wrong.addr().wrapping_sub(pointer.addr());
-    let last = if wrong.is_null() {
-        ptr::null_mut()
-    } else {
-        pointer.wrapping_byte_add(moved)
-    };
+    let last = if wrong.is_null() { ptr::null_mut() } else { pointer.wrapping_byte_add(moved) };
     (first, last, count)
 }
 

@@ -49,10 +49,7 @@ pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
             return Err(format!("{reason}\nafter the calls\n{}", calls.join("\n")));
         }
     }
-    Ok(Count {
-        calls: judge.calls,
-        steps: judge.steps,
-    })
+    Ok(Count { calls: judge.calls, steps: judge.steps })
 }
 
 /// Makes the calls on a new instance.

@@ -37,13 +37,7 @@ const TABLE: [(&[&str], &[Phase]); 8] = [
     (&["fmi2DoStep", "fmi2Terminate"], &[StepComplete]),
     (&["fmi2CancelStep"], &[]),
     (
-        &[
-            "fmi2SetReal",
-            "fmi2SetInteger",
-            "fmi2SetBoolean",
-            "fmi2SetString",
-            "fmi2SetRealInputDerivatives",
-        ],
+        &["fmi2SetReal", "fmi2SetInteger", "fmi2SetBoolean", "fmi2SetString", "fmi2SetRealInputDerivatives"],
         &[Instantiated, InitializationMode, StepComplete],
     ),
     (
@@ -57,10 +51,7 @@ const TABLE: [(&[&str], &[Phase]); 8] = [
         ],
         &[StepComplete, Terminated, Error],
     ),
-    (
-        &["fmi2GetReal", "fmi2GetInteger", "fmi2GetBoolean", "fmi2GetString"],
-        &Phase::ALL,
-    ),
+    (&["fmi2GetReal", "fmi2GetInteger", "fmi2GetBoolean", "fmi2GetString"], &Phase::ALL),
     (
         &[
             "fmi2SetDebugLogging",
@@ -86,7 +77,5 @@ pub fn functions() -> impl Iterator<Item = &'static str> {
 /// Whether the function is allowed in the state.
 pub fn allowed(function: &str, phase: Phase) -> bool {
     let row = TABLE.iter().find(|(functions, _)| functions.contains(&function));
-    row.unwrap_or_else(|| panic!("{function} is not a function of an instance"))
-        .1
-        .contains(&phase)
+    row.unwrap_or_else(|| panic!("{function} is not a function of an instance")).1.contains(&phase)
 }

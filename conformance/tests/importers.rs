@@ -20,19 +20,12 @@ struct Run {
 
 /// That with the acceleration held over each step, and the published one, with a sine and an axial force from the preload.
 fn runs() -> [Run; 2] {
-    let [held, published] = [
-        ("reference.csv", ["base.acceleration", "run"]),
-        ("scenes/paper-1khz.csv", ["time", "contact.force"]),
-    ]
-    .map(|(path, names)| table(path, names));
+    let [held, published] =
+        [("reference.csv", ["base.acceleration", "run"]), ("scenes/paper-1khz.csv", ["time", "contact.force"])]
+            .map(|(path, names)| table(path, names));
     assert_eq!([held.len(), published.len()], [501, 2001]);
     [
-        Run {
-            task: "run",
-            reals: &[("solver.tolerance", 1e-7)],
-            choices: &[],
-            rows: held,
-        },
+        Run { task: "run", reals: &[("solver.tolerance", 1e-7)], choices: &[], rows: held },
         Run {
             task: "published run",
             reals: &[],

@@ -32,11 +32,7 @@ pub fn curves(text: &str) -> Result<Vec<f64>, RunError> {
     let mut contact = Simulation::new(&file.scene, &start, 0.0)?;
     let (mut rows, mut events) = (Vec::new(), Vec::new());
     let mut record = |contact: &Simulation| {
-        rows.push(
-            [contact.time()]
-                .into_iter()
-                .chain(COLUMNS.map(|output| contact.real(output))),
-        );
+        rows.push([contact.time()].into_iter().chain(COLUMNS.map(|output| contact.real(output))));
         let own = contact.events().0.filter(|event| event.link == 0);
         events.extend(own.map(|event| [event.time, f64::from(u8::from(!event.closes))]));
     };
@@ -75,11 +71,7 @@ mod tests {
             assert_eq!(event[1], opens);
             open += (1.0 - 2.0 * opens) * event[0];
         }
-        assert!(
-            open > 0.0 && open <= numbers[6] && numbers[6] < 1.1 * open,
-            "{open} {}",
-            numbers[6]
-        );
+        assert!(open > 0.0 && open <= numbers[6] && numbers[6] < 1.1 * open, "{open} {}", numbers[6]);
         Ok(())
     }
 

@@ -95,10 +95,7 @@ mod tests {
     fn a_linearised_contact_opens_at_the_level_of_linear_theory() -> Result<(), RunError> {
         for frequency in [200.0, 1000.0, 2500.0] {
             let [found, linear] = scene(frequency, "effects.contactLaw = \"Linearised\"")?;
-            assert!(
-                (found / linear - 1.0).abs() < 2.0 * RESOLUTION,
-                "{frequency} Hz: {found} {linear}"
-            );
+            assert!((found / linear - 1.0).abs() < 2.0 * RESOLUTION, "{frequency} Hz: {found} {linear}");
         }
         Ok(())
     }
@@ -107,9 +104,8 @@ mod tests {
     #[test]
     fn the_published_contact_opens_most_easily_at_the_level_of_the_report() -> Result<(), RunError> {
         let levels = [1250.0, 1300.0, 1350.0, 1400.0, 1450.0].map(|frequency| scene(frequency, ""));
-        let least = levels
-            .into_iter()
-            .try_fold(f64::INFINITY, |least, level| Ok::<_, RunError>(least.min(level?[0])))?;
+        let least =
+            levels.into_iter().try_fold(f64::INFINITY, |least, level| Ok::<_, RunError>(least.min(level?[0])))?;
         assert!((least / 9.80665 - 29.7).abs() < 0.3, "{}", least / 9.80665);
         Ok(())
     }

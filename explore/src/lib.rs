@@ -20,11 +20,7 @@ struct Buffers {
     message: String,
 }
 
-static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers {
-    text: Vec::new(),
-    results: Vec::new(),
-    message: String::new(),
-});
+static BUFFERS: Mutex<Buffers> = Mutex::new(Buffers { text: Vec::new(), results: Vec::new(), message: String::new() });
 
 fn buffers() -> MutexGuard<'static, Buffers> {
     BUFFERS.lock().unwrap_or_else(PoisonError::into_inner)

@@ -76,10 +76,7 @@ fn thrown(scene: Scene, back: bool) -> Result<Vec<Check>> {
     }
     ensure!(furthest > 1e-4, "only {furthest} m from its core");
     let release = simulation.real(RealOutput::ArmatureLastRelease);
-    ensure!(
-        release > if back { 1.5e-3 } else { 0.0 },
-        "released last at {release} s"
-    );
+    ensure!(release > if back { 1.5e-3 } else { 0.0 }, "released last at {release} s");
     shaken(scene, -1500.0)
 }
 

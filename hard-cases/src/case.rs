@@ -59,13 +59,7 @@ impl Check {
         unit: &'static str,
         reason: &'static str,
     ) -> Self {
-        Self {
-            property,
-            measured,
-            allowed,
-            unit,
-            reason,
-        }
+        Self { property, measured, allowed, unit, reason }
     }
 
     /// No deviation is allowed.
@@ -116,11 +110,7 @@ impl Check {
 
     /// A value in the unit of the check.
     pub fn amount(&self, value: f64) -> String {
-        let digits = if value == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{value:.1e}")
-        };
+        let digits = if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") };
         format!("{digits} {}", self.unit).trim_end().to_owned()
     }
 }
@@ -128,11 +118,7 @@ impl Check {
 impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let (measured, allowed) = (self.amount(self.measured), self.amount(self.allowed));
-        write!(
-            f,
-            "{}: measured {measured}, allowed {allowed} ({})",
-            self.property, self.reason
-        )
+        write!(f, "{}: measured {measured}, allowed {allowed} ({})", self.property, self.reason)
     }
 }
 

@@ -65,9 +65,7 @@ fn shaken(scene: Scene) -> Result<Vec<Check>> {
 
 fn rough_laws() -> Result<Vec<Check>> {
     let exponents = [0.0, 0.1, 0.54, 0.75, 0.9];
-    let rides = exponents
-        .iter()
-        .flat_map(|exponent| [0.0, 8.063e-5].map(|damping| (*exponent, damping)));
+    let rides = exponents.iter().flat_map(|exponent| [0.0, 8.063e-5].map(|damping| (*exponent, damping)));
     closest(rides.map(|(exponent, damping)| {
         let mut scene = with_damping(damping);
         scene.effects.contact_law = ContactLawKind::Rough;
@@ -93,11 +91,7 @@ fn linear_laws() -> Result<Vec<Check>> {
 fn impact(damping: f64) -> Result<Vec<Check>> {
     let mut scene = with_damping(damping);
     scene.contact.overtravel = -1e-4;
-    Ride {
-        speed: -10.0,
-        ..Ride::new(scene, [Segment::accelerated(1e-4, 0.0); 3])
-    }
-    .checks()
+    Ride { speed: -10.0, ..Ride::new(scene, [Segment::accelerated(1e-4, 0.0); 3]) }.checks()
 }
 
 fn undamped_impact() -> Result<Vec<Check>> {

@@ -28,20 +28,12 @@ pub struct Segment {
 impl Segment {
     /// The base is accelerated (m/s2) for a time (s).
     pub fn accelerated(duration: f64, acceleration: f64) -> Self {
-        Self {
-            duration,
-            acceleration,
-            support: 0.0,
-        }
+        Self { duration, acceleration, support: 0.0 }
     }
 
     /// The fixed contact moves to a displacement (m) within a time (s).
     pub fn moved(duration: f64, support: f64) -> Self {
-        Self {
-            duration,
-            acceleration: 0.0,
-            support,
-        }
+        Self { duration, acceleration: 0.0, support }
     }
 }
 
@@ -76,12 +68,7 @@ pub struct Outcome {
 impl Ride {
     /// A scene that starts at rest.
     pub(crate) fn new(scene: Scene, segments: impl Into<Vec<Segment>>) -> Self {
-        Self {
-            scene,
-            speed: 0.0,
-            segments: segments.into(),
-            steps: 100_000,
-        }
+        Self { scene, speed: 0.0, segments: segments.into(), steps: 100_000 }
     }
 
     /// The scene with a square wave of base acceleration, which jumps at communication points and opens the contact of the
@@ -101,13 +88,7 @@ impl Ride {
             scene.solver.modes = i32::try_from(MAX_MODES)? - 1;
             model = Model::new(&scene, 0.0)?;
         }
-        let massless = Mode {
-            omega_squared: 0.0,
-            damping: 0.0,
-            tip: METER,
-            participation: 0.0,
-            ..Mode::default()
-        };
+        let massless = Mode { omega_squared: 0.0, damping: 0.0, tip: METER, participation: 0.0, ..Mode::default() };
         model = model.with(|model| model.modes.insert(0, massless));
         let mut rig = Rig::new(model);
         if self.speed != 0.0 {
@@ -146,9 +127,7 @@ impl Ride {
                 work += base + held;
                 outcome.throughput += base.abs() + held.abs();
                 let fastest = before.contact().rate.abs().max(rig.state.contact().rate.abs());
-                let way = (rig.state.contact().approach - before.contact().approach)
-                    .abs()
-                    .max(fastest * size);
+                let way = (rig.state.contact().approach - before.contact().approach).abs().max(fastest * size);
                 outcome.path += way + (rate * size).abs();
                 let balance = rig.energy() - work;
                 outcome.made = outcome.made.max(balance - lowest);
@@ -163,23 +142,14 @@ impl Ride {
 
     /// Checks at every communication point.
     fn inspect(&self, Rig { model, state, .. }: &Rig) -> Result<()> {
-        let numbers = [
-            state.time,
-            state.contact().approach,
-            state.contact().rate,
-            state.contact().force,
-            state.displacements[0],
-        ];
+        let numbers =
+            [state.time, state.contact().approach, state.contact().rate, state.contact().force, state.displacements[0]];
         let modal = state.modes.iter().flat_map(|mode| [mode.q, mode.v]);
         if numbers.into_iter().chain(modal).any(|x| !x.is_finite()) {
             bail!("not finite at {} s: {numbers:?}", state.time);
         }
         if state.contact().force < 0.0 && !model.law.never_opens() {
-            bail!(
-                "tensile contact force at {} s: {:e} N",
-                state.time,
-                state.contact().force
-            );
+            bail!("tensile contact force at {} s: {:e} N", state.time, state.contact().force);
         }
         if state.steps + state.rejected_steps > self.steps {
             bail!("more than {} integration steps until {} s", self.steps, state.time);
@@ -277,11 +247,7 @@ pub(crate) fn conserved(mut rig: Rig, microseconds: u32) -> Result<Vec<Check>> {
 
 /// Impulse of the contact force in excess of the preload force since the start, N s.
 fn meter(rig: &Rig) -> f64 {
-    rig.model
-        .modes
-        .first()
-        .filter(|mode| mode.tip == METER)
-        .map_or(0.0, |_| rig.state.modes[0].v / METER)
+    rig.model.modes.first().filter(|mode| mode.tip == METER).map_or(0.0, |_| rig.state.modes[0].v / METER)
 }
 
 /// Work of a base acceleration of 1 m/s2 since the preload, J.

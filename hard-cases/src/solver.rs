@@ -47,16 +47,10 @@ fn bonded_after_jumps(tolerance: f64) -> Result<Vec<Check>> {
     scene.effects.contact_law = ContactLawKind::Bonded;
     scene.contact.moving.youngs_modulus = 2.1e11;
     scene.solver.tolerance = tolerance;
-    let segments = [
-        (1.05e-5, 27_658.0, 0.0),
-        (1.62e-4, -16_475.0, 1.08e-6),
-        (1.1e-7, -32_393.0, 0.0),
-        (2.06e-4, 0.0, 0.0),
-    ];
-    let segments = segments.map(|(duration, acceleration, support)| Segment {
-        support,
-        ..Segment::accelerated(duration, acceleration)
-    });
+    let segments =
+        [(1.05e-5, 27_658.0, 0.0), (1.62e-4, -16_475.0, 1.08e-6), (1.1e-7, -32_393.0, 0.0), (2.06e-4, 0.0, 0.0)];
+    let segments = segments
+        .map(|(duration, acceleration, support)| Segment { support, ..Segment::accelerated(duration, acceleration) });
     Ride::new(scene, segments).checks_of_large_forces()
 }
 
@@ -65,27 +59,17 @@ fn below_rounding() -> Result<Vec<Check>> {
     scene.beam.width = 1e-4;
     scene.tip.mass = 0.0;
     scene.solver.tolerance = 1e-10;
-    let ride = Ride {
-        speed: -6.5,
-        steps: 300_000,
-        ..Ride::new(scene, [Segment::accelerated(1e-3, 0.0)])
-    };
+    let ride = Ride { speed: -6.5, steps: 300_000, ..Ride::new(scene, [Segment::accelerated(1e-3, 0.0)]) };
     let state = ride.run(4)?.rig.state;
     Ok(vec![Check::steps(state.steps + state.rejected_steps, ride.steps)])
 }
 
 /// The contact opens and closes again.
 fn nanoseconds() -> Result<Vec<Check>> {
-    let segments = [
-        Segment::accelerated(10e-6, -50_000.0),
-        Segment::accelerated(40e-6, 50_000.0),
-    ];
+    let segments = [Segment::accelerated(10e-6, -50_000.0), Segment::accelerated(40e-6, 50_000.0)];
     let ride = Ride::new(Scene::default(), segments);
     let nanoseconds = ride.run(25_000)?;
-    ensure!(
-        nanoseconds.rig.state.contact().last_closing > Some(0.0),
-        "the contact does not close again"
-    );
+    ensure!(nanoseconds.rig.state.contact().last_closing > Some(0.0), "the contact does not close again");
     let compared = [1, 64].map(|parts| Ok(vec![nanoseconds.same_force(&ride.run(parts)?)]));
     closest([ride.checks()].into_iter().chain(compared))
 }
@@ -104,8 +88,5 @@ fn seconds() -> Result<Vec<Check>> {
     let tolerance = Solver::DEFAULT_TOLERANCE * fine.model().force_scale;
     let steps = seconds.integer(IntegerOutput::SolverSteps).try_into()?;
     let property = "the same force after whole periods, independent of the run time";
-    Ok(vec![
-        Check::two_runs(property, off, tolerance),
-        Check::steps(steps, 999_999),
-    ])
+    Ok(vec![Check::two_runs(property, off, tolerance), Check::steps(steps, 999_999)])
 }

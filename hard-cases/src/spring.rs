@@ -33,21 +33,14 @@ pub(crate) fn shaken(change: impl FnOnce(&mut Scene)) -> Result<Vec<Check>> {
 }
 
 fn thrown() -> Result<Vec<Check>> {
-    let ride = Ride {
-        speed: -4.0,
-        ..Ride::new(undamped(), [Segment::accelerated(7.8e-5, 0.0)])
-    };
+    let ride = Ride { speed: -4.0, ..Ride::new(undamped(), [Segment::accelerated(7.8e-5, 0.0)]) };
     Ok(vec![ride.run(4)?.energy()])
 }
 
 fn pushed() -> Result<Vec<Check>> {
     let mut scene = undamped();
     scene.solver.tolerance = 1e-10;
-    Ride {
-        steps: 10_000,
-        ..Ride::new(scene, [3e-8, 6e-8, 4e-8].map(|support| Segment::moved(1e-5, support)))
-    }
-    .checks()
+    Ride { steps: 10_000, ..Ride::new(scene, [3e-8, 6e-8, 4e-8].map(|support| Segment::moved(1e-5, support))) }.checks()
 }
 
 /// A push so weak that the force change stays within the tolerance and need not be resolved.
@@ -57,9 +50,5 @@ fn pushed_within_tolerance() -> Result<Vec<Check>> {
     scene.beam.density = 1.0;
     scene.beam.stiffness_damping = 0.0;
     scene.tip.mass = 0.0;
-    Ride {
-        steps: 1000,
-        ..Ride::new(scene, [Segment::accelerated(1e-5, 4.6)])
-    }
-    .checks()
+    Ride { steps: 1000, ..Ride::new(scene, [Segment::accelerated(1e-5, 4.6)]) }.checks()
 }

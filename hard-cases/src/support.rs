@@ -57,11 +57,7 @@ fn open_for_a_second() -> Result<Vec<Check>> {
 fn crushing() -> Result<Vec<Check>> {
     closest([1e-2, 1e-3, 1e-4].map(|duration| {
         let segments = [Segment::moved(duration, 1e-3), Segment::moved(1e-3, 1e-3)];
-        Ride {
-            steps: 1_000_000,
-            ..Ride::new(Scene::default(), segments)
-        }
-        .checks()
+        Ride { steps: 1_000_000, ..Ride::new(Scene::default(), segments) }.checks()
     }))
 }
 
@@ -90,12 +86,7 @@ fn crushed_and_back() -> Result<Vec<Check>> {
     let at_statics = "the force reaches the static one of 1 mm more overtravel";
     Ok(vec![
         Check::tolerance(at_statics, (crushed - expected).abs(), tolerance * expected, "N"),
-        Check::tolerance(
-            "the force returns to the preload force",
-            (back - preload).abs(),
-            allowed,
-            "N",
-        ),
+        Check::tolerance("the force returns to the preload force", (back - preload).abs(), allowed, "N"),
         Check::exact("the contact force is never tensile", -least.min(0.0), "N"),
     ])
 }

@@ -30,11 +30,7 @@ fn within(variable: &Variable, x: f64) -> f64 {
     let Variable { min, max, .. } = *variable;
     if min < 0.0 {
         let magnitude = |x: f64| max * 1e-10_f64.powf(1.0 - x);
-        return if x < 0.5 {
-            min / max * magnitude(1.0 - 2.0 * x)
-        } else {
-            magnitude(2.0 * x - 1.0)
-        };
+        return if x < 0.5 { min / max * magnitude(1.0 - 2.0 * x) } else { magnitude(2.0 * x - 1.0) };
     }
     let low = if min > 0.0 { min } else { 1e-12 * max };
     match variable.unit {

@@ -55,12 +55,7 @@ impl Feedback {
         let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
         let mut slopes = [0.0; MAX_MODES];
         add_rows(&mut slopes, &geometric, modes.iter().map(at_rest));
-        Self {
-            section: *section,
-            deflection: preload.deflection,
-            geometric,
-            slopes,
-        }
+        Self { section: *section, deflection: preload.deflection, geometric, slopes }
     }
 
     /// Axial force above that of the preload, N, at a deflection of the tip given as deviation from it (m).

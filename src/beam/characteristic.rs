@@ -36,13 +36,7 @@ pub fn frequencies(section: &Section, axial_force: f64, stiffness: f64, count: u
 
 /// The determinant of the conditions at the tip, divided by `e^(s2 L)` and made dimensionless.
 fn determinant(section: &Section, axial_force: f64, stiffness: f64, omega: f64) -> f64 {
-    let Section {
-        length,
-        bending_stiffness,
-        mass_per_length,
-        tip_mass,
-        tip_inertia,
-    } = *section;
+    let Section { length, bending_stiffness, mass_per_length, tip_mass, tip_inertia } = *section;
     let nu = axial_force * length * length / bending_stiffness;
     let z4 = mass_per_length * omega * omega * length.powi(4) / bending_stiffness;
     let root = (nu * nu / 4.0 + z4).sqrt();
@@ -62,12 +56,7 @@ fn determinant(section: &Section, axial_force: f64, stiffness: f64, omega: f64) 
     let (sin, cos) = (sin * decay, cos * decay);
     let (sinh, cosh) = ((1.0 - decay * decay) / 2.0, f64::midpoint(1.0, decay * decay));
     // [W, W', W'', W'''] of U and V at the tip, in units of L.
-    let u = [
-        cos - cosh,
-        -s1 * sin - s2 * sinh,
-        -s1 * s1 * cos - s2 * s2 * cosh,
-        s1.powi(3) * sin - s2.powi(3) * sinh,
-    ];
+    let u = [cos - cosh, -s1 * sin - s2 * sinh, -s1 * s1 * cos - s2 * s2 * cosh, s1.powi(3) * sin - s2.powi(3) * sinh];
     let v = [
         s2 * sin - s1 * sinh,
         s1 * s2 * (cos - cosh),

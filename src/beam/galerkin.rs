@@ -171,8 +171,5 @@ fn functions(x: f64, count: usize) -> (DVector<f64>, DVector<f64>) {
         1 => (x.powi(3) - 3.0 * x - 2.0) / 6.0,
         k => (first(k + 1) - first(k - 1)) / (2 * k + 1) as f64,
     };
-    (
-        DVector::from_fn(count, |k, _| scale(k) * value(k)),
-        DVector::from_fn(count, |k, _| scale(k) * first(k)),
-    )
+    (DVector::from_fn(count, |k, _| scale(k) * value(k)), DVector::from_fn(count, |k, _| scale(k) * first(k)))
 }

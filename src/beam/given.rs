@@ -96,11 +96,8 @@ impl Given {
             let rest = compliance - held;
             (rest > ROUNDING * compliance).then(|| (rest * omega_squared).sqrt())
         };
-        let rest = Mode {
-            omega_squared,
-            damping: beta * omega_squared + 2.0 * omega_squared.sqrt(),
-            ..Mode::default()
-        };
+        let rest =
+            Mode { omega_squared, damping: beta * omega_squared + 2.0 * omega_squared.sqrt(), ..Mode::default() };
         let tip = residual(self.compliance, modes.iter().map(Mode::compliance).sum());
         let held = modes.iter().map(|mode| mode.parallel.powi(2) / mode.omega_squared);
         let parallel = residual(self.parallel_compliance, held.sum());

@@ -43,17 +43,9 @@ impl<'a> Mesh<'a> {
         let stretches = spring.parts.iter().map(|piece| {
             let sections = rule.nodes.iter().map(|x| piece.section(f64::midpoint(*x, 1.0)));
             let (flexibility, mass_per_length) = sections.map(|(stiffness, mass)| (1.0 / stiffness, mass)).unzip();
-            Stretch {
-                half: 0.5 * piece.length,
-                flexibility,
-                mass_per_length,
-            }
+            Stretch { half: 0.5 * piece.length, flexibility, mass_per_length }
         });
-        Self {
-            stretches: stretches.collect(),
-            spring,
-            rule,
-        }
+        Self { stretches: stretches.collect(), spring, rule }
     }
 
     /// The spring under a moment at the clamp (N m) and at the nodes, from the clamp on.
@@ -70,8 +62,7 @@ impl<'a> Mesh<'a> {
             let half = stretch.half;
             let curvature: Vec<f64> = moment.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
             let slopes: Vec<f64> = self.rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
-            bend.deflection
-                .extend(self.rule.integrals(&slopes).map(|sum| deflection + half * sum));
+            bend.deflection.extend(self.rule.integrals(&slopes).map(|sum| deflection + half * sum));
             slope += half * self.rule.integral(&curvature);
             deflection += half * self.rule.integral(&slopes);
             bend.slope.extend(slopes);
@@ -173,9 +164,7 @@ impl<'a> Mesh<'a> {
 
     /// Deflection at the pusher, m; 0 without one.
     pub fn at_pusher(&self, shape: &Bend) -> f64 {
-        self.spring
-            .before_pusher
-            .map_or(0.0, |before| Self::at_end(shape, before).0)
+        self.spring.before_pusher.map_or(0.0, |before| Self::at_end(shape, before).0)
     }
 
     /// The same at the end of so many stretches.
@@ -190,11 +179,7 @@ impl<'a> Mesh<'a> {
         let count = self.stretches.len() * self.rule.len();
         let (mut masses, mut lengths) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for (n, stretch) in self.stretches.iter().enumerate() {
-            let axial = if n < self.spring.before_contact {
-                stretch.half
-            } else {
-                0.0
-            };
+            let axial = if n < self.spring.before_contact { stretch.half } else { 0.0 };
             lengths.extend(self.rule.weights.iter().map(|weight| weight * axial));
             let nodes = self.rule.weights.iter().zip(&stretch.mass_per_length);
             masses.extend(nodes.map(|(weight, mass)| weight * stretch.half * mass));
@@ -281,11 +266,7 @@ impl Rule {
             };
             weights.iter().zip(&values).map(entry).collect::<Vec<_>>()
         });
-        Self {
-            partial: partial.collect(),
-            nodes,
-            weights,
-        }
+        Self { partial: partial.collect(), nodes, weights }
     }
 
     fn len(&self) -> usize {

@@ -13,10 +13,7 @@ pub type Modal = [f64; MAX_MODES];
 
 /// The values of a group of modes.
 #[inline(always)]
-#[expect(
-    clippy::indexing_slicing,
-    reason = "the room for the modes is a whole number of lanes"
-)]
+#[expect(clippy::indexing_slicing, reason = "the room for the modes is a whole number of lanes")]
 pub(crate) fn lanes(values: &Modal, group: usize) -> &[f64; LANES] {
     &values.as_chunks::<LANES>().0[group]
 }

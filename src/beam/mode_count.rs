@@ -55,11 +55,7 @@ pub struct Blow {
 
 impl Blow {
     /// Number of modes for a tolerance: a multiple of what the vectors of a step hold, at least three times that.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small positive count, saturating"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive count, saturating")]
     pub fn modes(&self, section: &Section, tolerance: f64) -> usize {
         let first = 3.516 * section.rate();
         let damping = 0.5 * (self.mass_damping / first + self.stiffness_damping * first);

@@ -34,10 +34,7 @@ impl Piece {
     pub fn section(&self, share: f64) -> (f64, f64) {
         let between = |[start, end]: [f64; 2]| start + (end - start) * share;
         let (width, thickness) = (between(self.width), between(self.thickness));
-        (
-            self.youngs_modulus * width * thickness.powi(3) / 12.0,
-            self.density * width * thickness,
-        )
+        (self.youngs_modulus * width * thickness.powi(3) / 12.0, self.density * width * thickness)
     }
 
     /// Both parts, cut at a share of the length; what sits at the end stays there.
@@ -65,11 +62,7 @@ impl Piece {
     fn graded(self, into: &mut Vec<Self>) {
         let ratio = |[start, end]: [f64; 2]| (end / start).max(start / end);
         let (width, thickness) = (self.width, self.thickness);
-        let most = if ratio(thickness) > ratio(width) {
-            thickness
-        } else {
-            width
-        };
+        let most = if ratio(thickness) > ratio(width) { thickness } else { width };
         let [start, end] = most;
         if ratio(most) <= TAPER {
             into.push(self);
@@ -198,11 +191,7 @@ impl Pieces {
 
     /// Number of nodes of a piece that represents `count` functions: those of a space of polynomials in the phase of a
     /// wave oscillate uniformly in its arc cosine.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small positive count"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive count")]
     pub fn nodes(&self, count: usize) -> usize {
         let count = count as f64;
         let whole: f64 = self.parts.iter().map(Piece::phase).sum();

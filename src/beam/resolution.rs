@@ -57,17 +57,10 @@ impl Resolution {
         let part = |(spring, blow): (usize, &Blow)| {
             let rows: Vec<_> = basis.last.iter().filter_map(|last| last.get(spring).copied()).collect();
             let force = OF_BOUND * greatest_force(&basis.modes, &rows, blow);
-            (force > 0.0).then(|| Part {
-                rows,
-                damping: blow.stiffness_damping / blow.contact_stiffness,
-                force,
-            })
+            (force > 0.0).then(|| Part { rows, damping: blow.stiffness_damping / blow.contact_stiffness, force })
         };
         let parts: Vec<_> = blows.into_iter().enumerate().filter_map(part).collect();
-        Self {
-            is_blind: basis.modes.len() == 1 && !parts.is_empty(),
-            parts,
-        }
+        Self { is_blind: basis.modes.len() == 1 && !parts.is_empty(), parts }
     }
 
     /// Of motions in which each mode has these displacements.
@@ -77,10 +70,7 @@ impl Resolution {
             let rows = motions.clone().map(row).collect();
             Part { rows, ..*part }
         };
-        Self {
-            parts: self.parts.iter().map(part).collect(),
-            ..*self
-        }
+        Self { parts: self.parts.iter().map(part).collect(), ..*self }
     }
 
     /// Error of the contact force in this motion of the modes, where the contact has this stiffness (N/m), N; the greatest number if it

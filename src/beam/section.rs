@@ -32,10 +32,7 @@ impl Section {
 
     /// Half the mass (kg) and eight times the bending stiffness over the cubed length (N/m): the units of functions on [-1, 1].
     pub(super) fn halves(&self) -> (f64, f64) {
-        (
-            self.mass_per_length * self.length / 2.0,
-            8.0 * self.bending_stiffness / self.length.powi(3),
-        )
+        (self.mass_per_length * self.length / 2.0, 8.0 * self.bending_stiffness / self.length.powi(3))
     }
 
     /// Axial compression at which the cantilever without contact buckles, pi^2 E I / (4 L^2), N.

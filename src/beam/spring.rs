@@ -83,12 +83,7 @@ impl Spring {
             let section = ritz::equivalent(pieces);
             (section, Statics::of(&section, ritz::static_space(pieces, &section)))
         });
-        Self {
-            section,
-            buckling_load: statics.buckling_load(),
-            statics,
-            form: Form::Segments(pieces),
-        }
+        Self { section, buckling_load: statics.buckling_load(), statics, form: Form::Segments(pieces) }
     }
 
     /// The spring of a uniform section.
@@ -165,41 +160,32 @@ impl Spring {
             });
         }
         let asked = (self.form.clone(), self.section, (count, axial_force, scene.rubs()));
-        let (undamped, space) = Shared::of(&KNOWN)
-            .modes
-            .of(asked, |(form, section, (count, axial_force, rubs))| {
-                let space = form.space(section, *count, *axial_force, *rubs)?;
-                Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
-            })?;
+        let (undamped, space) = Shared::of(&KNOWN).modes.of(asked, |(form, section, (count, axial_force, rubs))| {
+            let space = form.space(section, *count, *axial_force, *rubs)?;
+            Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
+        })?;
         let (mut modes, shapes): (Vec<Mode>, Vec<DVector<f64>>) = undamped.into_iter().unzip();
         for mode in &mut modes {
             mode.damping = alpha + beta * mode.omega_squared;
         }
         let root = self.section.halves().1.sqrt();
         let last = shapes.iter().map(|shape| last_of(shape).map(|entry| root * entry));
-        Some(Basis {
-            last: last.map(|last| [last, NONE, NONE]).collect(),
-            modes,
-            shapes,
-            space,
-        })
+        Some(Basis { last: last.map(|last| [last, NONE, NONE]).collect(), modes, shapes, space })
     }
 
     /// Lowest angular frequency under an axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
     /// rad/s.
     pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
         let asked = (self.form.clone(), self.section, (axial_force, stiffness));
-        Shared::of(&KNOWN)
-            .frequencies
-            .of(asked, |(form, section, (axial_force, stiffness))| {
-                if let Form::Uniform = form {
-                    let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
-                    return frequencies.first().copied();
-                }
-                let space = form.space(section, FREQUENCY_TERMS, *axial_force, false)?;
-                let modes = space.modes(section, *axial_force, *stiffness)?;
-                modes.first().map(|mode| mode.omega_squared.sqrt())
-            })
+        Shared::of(&KNOWN).frequencies.of(asked, |(form, section, (axial_force, stiffness))| {
+            if let Form::Uniform = form {
+                let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
+                return frequencies.first().copied();
+            }
+            let space = form.space(section, FREQUENCY_TERMS, *axial_force, false)?;
+            let modes = space.modes(section, *axial_force, *stiffness)?;
+            modes.first().map(|mode| mode.omega_squared.sqrt())
+        })
     }
 }
 
@@ -236,16 +222,9 @@ pub static KNOWN: Home<Known> = Home::new(None);
 
 /// The uniform section as a spring of one segment.
 fn uniform(beam: &Beam) -> Segments {
-    let segment = Segment {
-        length: beam.length,
-        width: [beam.width; 2],
-        thickness: [beam.thickness; 2],
-        ..Segment::default()
-    };
-    Segments {
-        segments: vec![segment],
-        ..Segments::default()
-    }
+    let segment =
+        Segment { length: beam.length, width: [beam.width; 2], thickness: [beam.thickness; 2], ..Segment::default() };
+    Segments { segments: vec![segment], ..Segments::default() }
 }
 
 /// Of springs that a mode is not of.

@@ -96,11 +96,7 @@ impl Springs {
     pub(crate) fn at_parallel(&self, axial_force: f64) -> AtPlace {
         let whole = self.moving.statics.at_parallel(axial_force);
         let tongues = self.tongue_compliance(axial_force);
-        AtPlace {
-            own: whole.own + tongues,
-            across: whole.across - tongues,
-            ..whole
-        }
+        AtPlace { own: whole.own + tongues, across: whole.across - tongues, ..whole }
     }
 
     /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring; where `asked` is not 0 that
@@ -137,10 +133,7 @@ impl Springs {
     /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
     /// Hz; and the file of the spring.
     pub fn missed(&self, blow: &Blow) -> Option<((f64, f64), StringParameter)> {
-        let moving = self
-            .moving
-            .missed(blow)
-            .map(|missed| (missed, StringParameter::BeamFile));
+        let moving = self.moving.missed(blow).map(|missed| (missed, StringParameter::BeamFile));
         moving.or_else(|| {
             let fixed = self.fixed.as_ref()?;
             Some((fixed.spring.missed(&fixed.blow(blow))?, StringParameter::FixedFile))
@@ -215,9 +208,8 @@ impl Beside {
     /// Deflection that opens the contact, per contact force with the share of friction that comes with it, m/N.
     pub fn compliance(&self) -> f64 {
         let statics = &self.spring.statics;
-        let turned = tangential_share(&self.scene).map_or(0.0, |share| {
-            share * self.scene.tip.contact_height * statics.moment_compliance(0.0)
-        });
+        let turned = tangential_share(&self.scene)
+            .map_or(0.0, |share| share * self.scene.tip.contact_height * statics.moment_compliance(0.0));
         self.tip_compliance() - turned
     }
 

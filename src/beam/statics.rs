@@ -71,18 +71,12 @@ impl Statics {
             let mut terms = Term::of(Space::new(TERMS)).into_iter();
             std::array::from_fn(|_| terms.next().unwrap_or_default())
         });
-        Self {
-            section: *section,
-            terms: OF_ALL.to_vec(),
-        }
+        Self { section: *section, terms: OF_ALL.to_vec() }
     }
 
     /// For a space in units of the section.
     pub(super) fn of(section: &Section, space: Space) -> Self {
-        Self {
-            section: *section,
-            terms: Term::of(space),
-        }
+        Self { section: *section, terms: Term::of(space) }
     }
 
     /// Axial compression at which the cantilever without contact buckles, N.
@@ -129,9 +123,7 @@ impl Statics {
     fn under_gravity(&self, axial_force: f64, place: impl Fn(&Term) -> f64) -> f64 {
         let (half_mass, _) = self.section.halves();
         let tip_mass = self.section.tip_mass;
-        -self.sum(axial_force, |term| {
-            place(term) * (half_mass * term.load + tip_mass * term.tip)
-        })
+        -self.sum(axial_force, |term| place(term) * (half_mass * term.load + tip_mass * term.tip))
     }
 
     fn sum(&self, axial_force: f64, product: impl Fn(&Term) -> f64) -> f64 {

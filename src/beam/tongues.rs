@@ -37,10 +37,7 @@ fn beyond(spring: &Segments, fork: f64) -> Segments {
         (end > fork).then(|| from(segment, cut))
     });
     let masses = spring.masses.iter().filter(|mass| mass.position > fork);
-    let moved = |mass: &PointMass| PointMass {
-        position: mass.position - fork,
-        ..*mass
-    };
+    let moved = |mass: &PointMass| PointMass { position: mass.position - fork, ..*mass };
     Segments {
         segments: segments.collect(),
         masses: masses.map(moved).collect(),

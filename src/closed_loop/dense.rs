@@ -26,11 +26,7 @@ pub struct DensePropagator {
 impl DensePropagator {
     pub(crate) fn room(oscillators: usize) -> Self {
         let none = [[0.0; LONG]; 2];
-        Self {
-            whole: zeroed_box(),
-            free: vec![none; 2 * oscillators],
-            generated: [none; 2],
-        }
+        Self { whole: zeroed_box(), free: vec![none; 2 * oscillators], generated: [none; 2] }
     }
 
     /// Computes the coefficients for a length (s) in place; the last of the nodes is the end of the step.

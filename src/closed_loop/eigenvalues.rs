@@ -79,21 +79,13 @@ fn damped_pair(problem: &Problem, nu: f64) -> Pair {
         // l (l + alpha) + nu h = 0.
         let root = |value: f64| {
             let beam = -value * (value + problem.mass_damping) / nu;
-            Root {
-                value,
-                beam,
-                contact: beam,
-            }
+            Root { value, beam, contact: beam }
         };
         Pair::Apart(root(slow), root(fast))
     } else {
         let value = Number::new(mean, 1.0, square);
         let beam = value * problem.stiffness_damping + 1.0;
-        Pair::Close(Root {
-            value,
-            beam,
-            contact: beam,
-        })
+        Pair::Close(Root { value, beam, contact: beam })
     }
 }
 
@@ -232,11 +224,7 @@ fn paired(problem: &Problem, zeros: Vec<Zero>) -> Option<Vec<Pair>> {
             rest = beyond;
             pairs.push(close_pair(problem, a, b));
         } else {
-            single.push(Root {
-                value: a.value.re,
-                beam: a.beam.re,
-                contact: a.contact.re,
-            });
+            single.push(Root { value: a.value.re, beam: a.beam.re, contact: a.contact.re });
         }
     }
     // Slowest with fastest, as for a strongly damped mode.

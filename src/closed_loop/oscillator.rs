@@ -40,10 +40,7 @@ impl Oscillator {
     /// Displacement and velocity under base acceleration, from those of the oscillator under a unit acceleration `x''`.
     pub(crate) fn loaded(&self, [y, y_rate]: [Complex<f64>; 2]) -> [Complex<f64>; 2] {
         let [kick, push] = self.load;
-        [
-            (y_rate + y * self.damping) * kick + y * push,
-            y_rate * push - y * (self.omega_squared * kick),
-        ]
+        [(y_rate + y * self.damping) * kick + y * push, y_rate * push - y * (self.omega_squared * kick)]
     }
 
     /// Upper bound of the contact force of the free motion.
@@ -99,11 +96,7 @@ impl Oscillator {
             let free = (root * length).exp();
             let rate = omega - root;
             let z = rate * length;
-            if z.norm() > 0.5 {
-                (turn - free) / rate
-            } else {
-                free * length * growth(z)
-            }
+            if z.norm() > 0.5 { (turn - free) / rate } else { free * length * growth(z) }
         };
         let root = Complex::new(-half, w);
         let (upper, lower) = (driven(root), driven(root.conj()));

@@ -64,10 +64,7 @@ pub struct ByLength<T> {
 
 impl<T> ByLength<T> {
     pub(crate) fn new(room: usize, empty: impl Fn() -> T) -> Self {
-        Self {
-            kept: (0..room).map(|_| (0.0, empty())).collect(),
-            oldest: 0,
-        }
+        Self { kept: (0..room).map(|_| (0.0, empty())).collect(), oldest: 0 }
     }
 
     /// The entry for a length (s), filled in if it is not kept; `None` without any room.

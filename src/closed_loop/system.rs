@@ -119,14 +119,11 @@ impl ClosedLoop {
         let component = |pair: usize, mode: usize| pairs.get(pair % count)?.components.get(mode / 2);
         let pick = |values: [f64; 2], n: usize| values.get(n).copied().unwrap_or(f64::NAN);
         let right = |mode: usize, x: usize| {
-            component(x, mode).map_or(f64::NAN, |part| {
-                pick(if mode.is_multiple_of(2) { part.q } else { part.v }, x / count)
-            })
+            component(x, mode)
+                .map_or(f64::NAN, |part| pick(if mode.is_multiple_of(2) { part.q } else { part.v }, x / count))
         };
         let left = |x: usize, mode: usize| {
-            component(x, mode).map_or(f64::NAN, |part| {
-                pick(if x < count { part.x } else { part.x_rate }, mode % 2)
-            })
+            component(x, mode).map_or(f64::NAN, |part| pick(if x < count { part.x } else { part.x_rate }, mode % 2))
         };
         let mut closed_loop = Self {
             contact,
@@ -144,11 +141,7 @@ impl ClosedLoop {
         let force = |motion: &Coordinates| closed_loop.force_of(motion);
         let [per_sine, per_cosine] = closed_loop.steady.each_ref().map(force);
         let [acceleration, jerk, push, growth] = closed_loop.particular.each_ref().map(force);
-        let generated = if resonant {
-            f64::INFINITY
-        } else {
-            per_sine.hypot(per_cosine)
-        };
+        let generated = if resonant { f64::INFINITY } else { per_sine.hypot(per_cosine) };
         closed_loop.forces = [acceleration, jerk, push, growth, generated];
         closed_loop.is_exact(modes).then_some(closed_loop)
     }
@@ -255,10 +248,9 @@ impl ClosedLoop {
         let (x, v) = free.split_at(count);
         let mut moved = [0.0; 2 * MAX_MODES];
         let (x_end, v_end) = moved.split_at_mut(count);
-        for (ends, from_x, from_v) in [
-            (x_end, &propagator.x_from_x, &propagator.x_from_v),
-            (v_end, &propagator.v_from_x, &propagator.v_from_v),
-        ] {
+        for (ends, from_x, from_v) in
+            [(x_end, &propagator.x_from_x, &propagator.x_from_v), (v_end, &propagator.v_from_x, &propagator.v_from_v)]
+        {
             let steps = from_x.iter().zip(from_v);
             for (((end, x), v), (from_x, from_v)) in ends.iter_mut().zip(x).zip(v).zip(steps) {
                 *end = from_x * x + from_v * v;
@@ -324,11 +316,7 @@ impl ClosedLoop {
         let count = self.oscillators.len();
         let (x, v) = free.split_at(count);
         let [per_sine, per_cosine] = self.steady.each_ref().map(|steady| steady.split_at(count));
-        let steady = per_sine
-            .0
-            .iter()
-            .zip(per_cosine.0)
-            .zip(per_sine.1.iter().zip(per_cosine.1));
+        let steady = per_sine.0.iter().zip(per_cosine.0).zip(per_sine.1.iter().zip(per_cosine.1));
         let mut swing = 0.0;
         for ((oscillator, (x, v)), ((x_sine, x_cosine), (v_sine, v_cosine))) in
             self.oscillators.iter().zip(x.iter().zip(v)).zip(steady)
@@ -365,10 +353,6 @@ impl Steady {
 
     /// The loads `length` seconds later.
     pub(crate) fn after(self, length: f64) -> Self {
-        Self {
-            acceleration: self.acceleration + self.jerk * length,
-            force: self.force + self.growth * length,
-            ..self
-        }
+        Self { acceleration: self.acceleration + self.jerk * length, force: self.force + self.growth * length, ..self }
     }
 }

@@ -100,13 +100,7 @@ pub struct Slip {
 impl Slip {
     /// Whether a simulation can reach these numbers by a time (s).
     pub fn is_sound(&self, time: f64) -> bool {
-        let Self {
-            way,
-            phase: _,
-            distance,
-            dissipated,
-            last_change,
-        } = self;
+        let Self { way, phase: _, distance, dissipated, last_change } = self;
         let finite = [way, distance, dissipated].into_iter().all(|number| number.is_finite());
         finite && *distance >= 0.0 && last_change.is_none_or(|change| change.is_finite() && change <= time)
     }
@@ -150,11 +144,7 @@ impl Friction {
     pub(crate) fn trial(&self, law: &Power, d: f64, z: f64, rate: f64) -> Stick {
         let stiffness = self.ratio * law.tangent_stiffness(d);
         let force = -stiffness * (z + law.damping * rate);
-        Stick {
-            force,
-            by_indentation: if d > 0.0 { (law.exponent - 1.0) * force / d } else { 0.0 },
-            stiffness,
-        }
+        Stick { force, by_indentation: if d > 0.0 { (law.exponent - 1.0) * force / d } else { 0.0 }, stiffness }
     }
 
     /// Deflection to which the tangential spring of a slipping contact tends, m: -T / k_t.
@@ -173,9 +163,7 @@ impl Friction {
 
 /// Friction force at the preload per contact force, if the scene has friction.
 pub(crate) fn tangential_share(scene: &Scene) -> Option<f64> {
-    scene
-        .rubs()
-        .then_some(scene.friction.initial * scene.friction.coefficient)
+    scene.rubs().then_some(scene.friction.initial * scene.friction.coefficient)
 }
 
 /// `k_t / k = 4 G* / E*`.

@@ -64,11 +64,7 @@ impl Law {
 
     /// Contact force at the indentation `d` (m) growing at `rate` (m/s), N.
     pub fn force(&self, d: f64, rate: f64) -> f64 {
-        if self.engagement(d, rate) > 0.0 {
-            self.closed_branch(d, rate).force
-        } else {
-            0.0
-        }
+        if self.engagement(d, rate) > 0.0 { self.closed_branch(d, rate).force } else { 0.0 }
     }
 
     /// Force and derivatives on the closed branch, continued where the contact would be open.

@@ -22,11 +22,7 @@ pub struct Linear {
 impl Linear {
     /// Force over stiffness, m: positive while the contact is closed, which it always is when bonded.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
-        if self.bonded {
-            f64::INFINITY
-        } else {
-            self.branch_engagement(d, rate)
-        }
+        if self.bonded { f64::INFINITY } else { self.branch_engagement(d, rate) }
     }
 
     /// The force, also where tensile, at several indentations (m) and velocities (m/s).
@@ -36,11 +32,7 @@ impl Linear {
         for (force, rate) in forces.iter_mut().zip(rate) {
             *force = self.stiffness * self.branch_engagement(*force, *rate);
         }
-        Branches {
-            forces,
-            stiffness: [self.stiffness; S],
-            damping: [self.damping * self.stiffness; S],
-        }
+        Branches { forces, stiffness: [self.stiffness; S], damping: [self.damping * self.stiffness; S] }
     }
 
     /// Mean elastic force between two indentations (m), N.

@@ -29,15 +29,7 @@ pub(crate) struct Branches<const S: usize> {
 impl From<Branches<1>> for Branch {
     #[inline(always)]
     fn from(branches: Branches<1>) -> Self {
-        let Branches {
-            forces: [force],
-            stiffness: [stiffness],
-            damping: [damping],
-        } = branches;
-        Self {
-            force,
-            stiffness,
-            damping,
-        }
+        let Branches { forces: [force], stiffness: [stiffness], damping: [damping] } = branches;
+        Self { force, stiffness, damping }
     }
 }

@@ -55,13 +55,7 @@ pub(crate) fn compliance(contact: &Contact) -> f64 {
 
 impl Power {
     fn new(coefficient: f64, exponent: f64, damping: f64) -> Self {
-        Self {
-            coefficient,
-            exponent,
-            damping,
-            traces: 0.0,
-            least: 0.0,
-        }
+        Self { coefficient, exponent, damping, traces: 0.0, least: 0.0 }
     }
 
     /// Smooth spheres: Hertz, from the two materials and the radius of curvature.
@@ -115,12 +109,7 @@ impl Power {
     /// A contact of the materials of the first, with this radius (m), stiffness (N/m) and damping time (s).
     fn of_other(scene: &Scene, (curvature_radius, stiffness, damping): (f64, f64, f64)) -> Self {
         let mut as_first = scene.clone();
-        as_first.contact = Contact {
-            curvature_radius,
-            damping,
-            stiffness,
-            ..scene.contact
-        };
+        as_first.contact = Contact { curvature_radius, damping, stiffness, ..scene.contact };
         Self::of(&as_first)
     }
 
@@ -132,21 +121,13 @@ impl Power {
         if self.exponent <= HERTZ {
             return self;
         }
-        Self {
-            traces: TRACES * tolerance * scale,
-            least: self.indentation(ROUNDING * scale),
-            ..self
-        }
+        Self { traces: TRACES * tolerance * scale, least: self.indentation(ROUNDING * scale), ..self }
     }
 
     /// `d^(p-1)`, m^(p-1), of a positive indentation (m).
     #[inline(always)]
     fn slope(&self, d: f64) -> f64 {
-        if self.exponent == HERTZ {
-            d.sqrt()
-        } else {
-            d.powf(self.exponent - 1.0)
-        }
+        if self.exponent == HERTZ { d.sqrt() } else { d.powf(self.exponent - 1.0) }
     }
 
     /// Elastic force at the indentation (m), N.
@@ -157,20 +138,12 @@ impl Power {
 
     /// Tangent stiffness at the indentation (m), N/m; 0 while there is none.
     pub fn tangent_stiffness(&self, indentation: f64) -> f64 {
-        if indentation > 0.0 {
-            self.exponent * self.coefficient * self.slope(indentation)
-        } else {
-            0.0
-        }
+        if indentation > 0.0 { self.exponent * self.coefficient * self.slope(indentation) } else { 0.0 }
     }
 
     /// Force (N) as the contact touches at a velocity (m/s): a jump where the stiffness does not vanish at first touch.
     pub fn force_at_touch(&self, rate: f64) -> f64 {
-        if self.exponent == 1.0 {
-            self.coefficient * self.damping * rate.max(0.0)
-        } else {
-            0.0
-        }
+        if self.exponent == 1.0 { self.coefficient * self.damping * rate.max(0.0) } else { 0.0 }
     }
 
     /// Indentation at which the elastic force is `force` (N), m.
@@ -291,11 +264,7 @@ impl Power {
     pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
         // Chosen rather than branched to, and anything where it is open; NaN is not.
         let held = d.map(|d| if d <= 0.0 { 1.0 } else { d });
-        let slopes = if self.exponent == HERTZ {
-            held.map(f64::sqrt)
-        } else {
-            powers(&held, self.exponent - 1.0)
-        };
+        let slopes = if self.exponent == HERTZ { held.map(f64::sqrt) } else { powers(&held, self.exponent - 1.0) };
         let (coefficient, exponent, by_rate) = (self.coefficient, self.exponent, self.by_rate());
         let [mut forces, mut stiffness, mut damping] = [[0.0; S]; 3];
         for k in 0..S {
@@ -306,11 +275,7 @@ impl Power {
             stiffness[k] = slope * (1.0 + (exponent - 1.0) * g / held[k]);
             damping[k] = by_rate * slope;
         }
-        Branches {
-            forces,
-            stiffness,
-            damping,
-        }
+        Branches { forces, stiffness, damping }
     }
 }
 
@@ -327,11 +292,7 @@ fn divided_power(power: f64, a: f64, b: f64) -> f64 {
     }
     // With s = (b - a) / b: b^(power-1) (1 - (1-s)^power) / s, which tends to power as s vanishes.
     let s = (b - a.max(0.0)) / b;
-    let ratio = if s > 0.0 {
-        -(power * (-s).ln_1p()).exp_m1() / s
-    } else {
-        power
-    };
+    let ratio = if s > 0.0 { -(power * (-s).ln_1p()).exp_m1() / s } else { power };
     let inside = if a < 0.0 { b / (b - a) } else { 1.0 };
     b.powf(power - 1.0) * ratio * inside
 }

@@ -21,10 +21,7 @@ pub struct Turns<const S: usize> {
 }
 
 impl<const S: usize> Turns<S> {
-    pub const NONE: Self = Self {
-        rotation: [[0.0; S]; 2],
-        times: [0.0; S],
-    };
+    pub const NONE: Self = Self { rotation: [[0.0; S]; 2], times: [0.0; S] };
 
     /// Computes the coefficients for a step of `length` seconds with these nodes in place.
     pub fn fill(&mut self, generator: &Generator, length: f64, nodes: &Nodal<S>) {
@@ -271,13 +268,7 @@ mod tests {
             excited(sine, (1000.0, 0.0), (0.0, 1.0)),
             excited(random, (10.0, 2000.0), (0.0, 1.0)),
         ];
-        let early_steps = [
-            (0.0, 3e-4),
-            (3e-4, 1e-4),
-            (7.1e-4, 3e-5),
-            (1.3e-3, 1e-9),
-            (2.2e-3, 1e-4),
-        ];
+        let early_steps = [(0.0, 3e-4), (3e-4, 1e-4), (7.1e-4, 3e-5), (1.3e-3, 1e-9), (2.2e-3, 1e-4)];
         let late_steps = [0.1, 17.3, 449.9, 451.2, 899.9].map(|time| (time, 3e-5));
         for (scenes, steps) in [(&early[..], early_steps), (&late[..], late_steps)] {
             for (scene, (time, length)) in scenes.iter().flat_map(|scene| steps.map(|step| (scene, step))) {

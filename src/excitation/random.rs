@@ -64,11 +64,7 @@ pub struct Piece {
 
 impl Default for Piece {
     fn default() -> Self {
-        Self {
-            number: -1.0,
-            middle: 0.0,
-            series: [0.0; TERMS],
-        }
+        Self { number: -1.0, middle: 0.0, series: [0.0; TERMS] }
     }
 }
 
@@ -119,14 +115,7 @@ impl Random {
         for (high, low) in highs.iter_mut().zip(lows) {
             [*high, *low] = split(*high);
         }
-        Self {
-            amplitude,
-            factors,
-            frequencies,
-            phases,
-            highest,
-            window: Window::from(excitation.start_time),
-        }
+        Self { amplitude, factors, frequencies, phases, highest, window: Window::from(excitation.start_time) }
     }
 
     /// Acceleration at `time` (s), m/s2.
@@ -169,10 +158,7 @@ impl Random {
         let mut nodes = [start; S];
         add::<S, A>(&mut nodes, per_half, times);
         let [start] = piece.values::<1, A>(&[start]);
-        Accelerations {
-            start,
-            nodes: piece.values::<S, A>(&nodes),
-        }
+        Accelerations { start, nodes: piece.values::<S, A>(&nodes) }
     }
 
     /// Makes a piece the one with this number and its middle (s after the start).
@@ -279,10 +265,7 @@ fn unit<A: Arithmetic>(turns: f64) -> (f64, f64) {
     // Sine and cosine of the quarters: -2 to 2.
     let cos_quarters = 1.0 - quarters.abs();
     let sin_quarters = quarters * (2.0 - quarters.abs());
-    (
-        sin * cos_quarters + cos * sin_quarters,
-        cos * cos_quarters - sin * sin_quarters,
-    )
+    (sin * cos_quarters + cos * sin_quarters, cos * cos_quarters - sin * sin_quarters)
 }
 
 /// SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014): the same numbers on every platform.
@@ -314,11 +297,7 @@ mod tests {
         // The first outputs of the reference implementation in C, <https://prng.di.unimi.it/splitmix64.c>, from
         // 1234567.
         let mut generator = SplitMix64(1_234_567);
-        for expected in [
-            6_457_827_717_110_365_317,
-            3_203_168_211_198_807_973,
-            9_817_491_932_198_370_423,
-        ] {
+        for expected in [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423] {
             assert_eq!(generator.next(), expected);
         }
     }
@@ -330,10 +309,7 @@ mod tests {
             let (sin, cos) = (TAU * (turns - turns.round())).sin_cos();
             for found in [unit::<Separate>(turns), unit::<Fused>(turns)] {
                 // A few roundings of numbers up to 1, and of the angle up to pi.
-                assert!(
-                    (found.0 - sin).abs().max((found.1 - cos).abs()) < 1e-15,
-                    "{turns} {found:?}"
-                );
+                assert!((found.0 - sin).abs().max((found.1 - cos).abs()) < 1e-15, "{turns} {found:?}");
             }
         }
     }

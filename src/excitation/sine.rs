@@ -40,10 +40,7 @@ impl Sine {
             amplitude: excitation.amplitude,
             frequency: 0.5 / excitation.duration,
             phase: 0.0,
-            window: Window {
-                start: excitation.start_time,
-                end: excitation.start_time + excitation.duration,
-            },
+            window: Window { start: excitation.start_time, end: excitation.start_time + excitation.duration },
             rise_time: 0.0,
         }
     }

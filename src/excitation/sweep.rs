@@ -37,10 +37,7 @@ impl LogSweep {
         let rate = logarithm(excitation.end_frequency, frequency) / excitation.duration;
         let displacement_limit = displacement_limit(excitation);
         let crossing = (excitation.amplitude.abs() / displacement_limit).sqrt() / TAU;
-        let window = Window {
-            start,
-            end: start + excitation.duration,
-        };
+        let window = Window { start, end: start + excitation.duration };
         Self {
             amplitude: excitation.amplitude,
             frequency,
@@ -95,10 +92,7 @@ impl LogSweep {
             let angle = phase + TAU * frequency * after * (1.0 + excess);
             self.amplitude_at(frequency * (1.0 + x * (1.0 + excess))) * angle.sin()
         };
-        Accelerations {
-            start: at(0.0),
-            nodes: times.map(at),
-        }
+        Accelerations { start: at(0.0), nodes: times.map(at) }
     }
 
     /// The next instant after `time` (s) at which it starts, crosses over or ends.

@@ -24,10 +24,7 @@ pub struct Window {
 impl From<f64> for Window {
     /// From the instant (s) on, without an end.
     fn from(start: f64) -> Self {
-        Self {
-            start,
-            end: f64::INFINITY,
-        }
+        Self { start, end: f64::INFINITY }
     }
 }
 

@@ -77,11 +77,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     };
     // SAFETY: the contract of the module.
     let [name, guid, resources] = unsafe {
-        [
-            text(instanceName, "instanceName"),
-            text(fmuGUID, "fmuGUID"),
-            text(fmuResourceLocation, "fmuResourceLocation"),
-        ]
+        [text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID"), text(fmuResourceLocation, "fmuResourceLocation")]
     };
     let resources = resources.ok().and_then(|text| resources::folder(text.to_str().ok()?));
     let name = name.ok().filter(|name| !name.is_empty());

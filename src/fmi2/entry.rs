@@ -28,11 +28,7 @@ const FREED: u64 = u64::from_be_bytes(*b"relay\0fr");
 
 /// Moves an instance to the heap and returns a pointer for C.
 pub(super) fn hand_out(instance: Instance) -> fmi2Component {
-    Box::into_raw(Box::new(Handle {
-        guard: AtomicU64::new(IDLE),
-        instance: UnsafeCell::new(instance),
-    }))
-    .cast()
+    Box::into_raw(Box::new(Handle { guard: AtomicU64::new(IDLE), instance: UnsafeCell::new(instance) })).cast()
 }
 
 /// Takes an instance back and drops it. A pointer that is not an instance, or one in use, is ignored.
@@ -59,9 +55,7 @@ unsafe fn occupy(component: fmi2Component, next: u64) -> Option<*const Handle> {
     let guard = unsafe { &(*handle).guard };
     // Read first, so that memory that is not an instance is not written to.
     (guard.load(Ordering::Relaxed) == IDLE
-        && guard
-            .compare_exchange(IDLE, next, Ordering::Acquire, Ordering::Relaxed)
-            .is_ok())
+        && guard.compare_exchange(IDLE, next, Ordering::Acquire, Ordering::Relaxed).is_ok())
     .then_some(handle)
 }
 
@@ -88,10 +82,7 @@ pub(super) unsafe fn call(
                 Err(Failure::Panic(panic_text(panic.as_ref())))
             })
         } else {
-            Err(Failure::CallOrder {
-                function,
-                state: instance.state,
-            })
+            Err(Failure::CallOrder { function, state: instance.state })
         };
         match result {
             Ok(()) => fmi2OK,
@@ -185,10 +176,7 @@ mod tests {
         // SAFETY: the component was handed out above and is freed at the end.
         unsafe {
             assert_eq!(call(component, RESET, |_| panic!("internal")), fmi2Error);
-            assert_eq!(
-                call(component, GET_REAL, |instance| state(instance, State::Error)),
-                fmi2OK
-            );
+            assert_eq!(call(component, GET_REAL, |instance| state(instance, State::Error)), fmi2OK);
             assert_eq!(call(component, DO_STEP, |_| Ok(())), fmi2Error);
             let reset = |instance: &mut Instance| {
                 instance.reset();

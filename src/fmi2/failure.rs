@@ -11,17 +11,9 @@ pub(super) enum Failure {
     #[error("argument {0} is null, misaligned or too long")]
     Pointer(&'static str),
     #[error("value reference {reference}{}: no {kind} variable", owner.map(|name| format!(" ({name})")).unwrap_or_default())]
-    UnknownReference {
-        kind: &'static str,
-        reference: u32,
-        owner: Option<&'static str>,
-    },
+    UnknownReference { kind: &'static str, reference: u32, owner: Option<&'static str> },
     #[error("{name}: cannot be set in the state {}; {reason}", state.name())]
-    NotSettable {
-        name: &'static str,
-        state: State,
-        reason: &'static str,
-    },
+    NotSettable { name: &'static str, state: State, reason: &'static str },
     #[error("{name}: has no value in the state {}; outputs can be read from Initialization Mode on", state.name())]
     NotComputed { name: &'static str, state: State },
     /// A value that its variable does not allow.
@@ -38,11 +30,7 @@ pub(super) enum Failure {
     #[error("{0}; reached by its derivative in this step")]
     Course(SceneError),
     #[error("{name} = {}: not allowed, {allowed}", number(*value))]
-    Argument {
-        name: &'static str,
-        value: f64,
-        allowed: String,
-    },
+    Argument { name: &'static str, value: f64, allowed: String },
     #[error("tolerance = {}: ignored, as it is not a positive finite number", number(*.0))]
     Tolerance(f64),
     /// A communication point that differs from the time of the instance by more than rounding. The step is done.
@@ -61,12 +49,7 @@ pub(super) enum Failure {
          errors grow with each closing of this contact, or {modes} modes are too few for its impacts. Not reported again",
         number(*time)
     )]
-    Inaccurate {
-        time: f64,
-        tolerance: f64,
-        error: f64,
-        modes: usize,
-    },
+    Inaccurate { time: f64, tolerance: f64, error: f64, modes: usize },
     #[error(
         "category {0}: no such log category, allowed are logStatusError, logStatusWarning, logEvents and logSolver; \
          nothing changed"

@@ -58,11 +58,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FM
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe {
-        call(c, states::SET_FMU_STATE, |instance| {
-            instance.restore(&saved(FMUstate)?.snapshot)
-        })
-    }
+    unsafe { call(c, states::SET_FMU_STATE, |instance| instance.restore(&saved(FMUstate)?.snapshot)) }
 }
 
 /// Frees a saved state and sets the pointer to null. Null is ignored. Those left are freed with their instance.

@@ -94,11 +94,7 @@ impl Logger {
 
     /// Passes the message of a failed call to the importer.
     pub(super) fn log_status(&self, status: fmi2Status, message: &str) {
-        let category = if status >= fmi2Error {
-            StatusError
-        } else {
-            StatusWarning
-        };
+        let category = if status >= fmi2Error { StatusError } else { StatusWarning };
         self.log(category, status, message);
     }
 
@@ -112,13 +108,7 @@ impl Logger {
         // SAFETY: the importer promises a logger of this type that can be called until the instance is freed. The
         // strings live through the call, and the format asks for no further argument.
         unsafe {
-            callback(
-                self.environment,
-                self.instance_name.as_ptr(),
-                status,
-                category.name().as_ptr(),
-                format.as_ptr(),
-            );
+            callback(self.environment, self.instance_name.as_ptr(), status, category.name().as_ptr(), format.as_ptr());
         }
     }
 }

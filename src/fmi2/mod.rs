@@ -6,12 +6,7 @@
 //! The only unsafe code of the library lives in this folder.
 #![allow(unsafe_code)]
 // Names as in the standard; the contract for callers is given once above.
-#![allow(
-    non_camel_case_types,
-    non_snake_case,
-    non_upper_case_globals,
-    clippy::missing_safety_doc
-)]
+#![allow(non_camel_case_types, non_snake_case, non_upper_case_globals, clippy::missing_safety_doc)]
 
 mod co_simulation;
 mod common;

@@ -53,9 +53,7 @@ pub(super) fn from_bytes(bytes: &[u8]) -> Result<Snapshot, Failure> {
     }
     let (length, rest) = rest.split_first_chunk().ok_or_else(truncated)?;
     let length = u64::from_le_bytes(*length);
-    let contents = usize::try_from(length)
-        .ok()
-        .and_then(|length| rest.split_at_checked(length));
+    let contents = usize::try_from(length).ok().and_then(|length| rest.split_at_checked(length));
     let (contents, checksum) = contents.ok_or_else(truncated)?;
     let (checksum, beyond) = checksum.split_first_chunk().ok_or_else(truncated)?;
     if !beyond.is_empty() {

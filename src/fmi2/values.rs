@@ -132,11 +132,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     value: *const fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe {
-        set(c, states::SET_INTEGER, vr, nvr, value, |value| {
-            Ok(Value::Integer(value))
-        })
-    }
+    unsafe { set(c, states::SET_INTEGER, vr, nvr, value, |value| Ok(Value::Integer(value))) }
 }
 
 /// Sets Boolean parameters. Every value except `fmi2False` is true.

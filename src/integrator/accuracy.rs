@@ -42,24 +42,12 @@ impl<const S: usize> Whole<'_, S> {
 
     /// The same of a short step, N, where a force turns; not of one that hardly changes, as the fastest vibrations need not be resolved.
     pub(crate) fn inaccuracy_of_turns(&self) -> f64 {
-        let Self {
-            model,
-            state,
-            drive,
-            collocation,
-            trial,
-            length,
-            ..
-        } = *self;
+        let Self { model, state, drive, collocation, trial, length, .. } = *self;
         let links = model.links.iter().zip(&state.links).zip(&trial.links);
         let closed = links.filter(|((_, at), _)| at.closed);
         let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &collocation.places, &nodes.forces));
         let bent = drive.has_just_changed(state.time, length);
-        let missed = if bent {
-            FADED * trial.start_defect
-        } else {
-            BETWEEN_NODES * trial.next_terms
-        };
+        let missed = if bent { FADED * trial.start_defect } else { BETWEEN_NODES * trial.next_terms };
         let error = trial.inner_error.lasting.max(missed);
         error.min(swings.fold(0.0, f64::max))
     }
@@ -68,12 +56,7 @@ impl<const S: usize> Whole<'_, S> {
     /// The polynomial through the indentations has slopes at the nodes that differ from the velocities there; between two nodes its
     /// error is the cubic with these slopes.
     fn misread(&self) -> f64 {
-        let Self {
-            model,
-            collocation,
-            length,
-            ..
-        } = *self;
+        let Self { model, collocation, length, .. } = *self;
         let (Some(start), Some(nodes)) = (self.state.links.get(CONTACT), self.trial.links.get(CONTACT)) else {
             return 0.0;
         };

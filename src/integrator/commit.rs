@@ -105,10 +105,7 @@ fn follow_slip<const S: usize>(
     for (slip, (deflection, left)) in slips.iter_mut().zip(trial.slip.deflections.iter().zip(&left)) {
         *slip = -*slip - deflection - left;
     }
-    let forces = (
-        state.links.get(index)?.force,
-        nodes.forces.map(|force| link.force + force),
-    );
+    let forces = (state.links.get(index)?.force, nodes.forces.map(|force| link.force + force));
     let dissipated = trial.slip.dissipated(collocation, forces, &left, length);
     let dissipated = dissipated.map(|energy| start.dissipated + energy);
     let contact = *state.links.get(CONTACT)?;

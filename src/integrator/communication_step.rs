@@ -57,17 +57,9 @@ pub(crate) fn advance(
     steps: Steps,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
-    let mut recorder = Recorder {
-        extremes,
-        ..Recorder::default()
-    };
+    let mut recorder = Recorder { extremes, ..Recorder::default() };
     let (grid, driven) = match steps {
-        Steps::Exactly {
-            time,
-            size,
-            recurs,
-            driven,
-        } => {
+        Steps::Exactly { time, size, recurs, driven } => {
             exact_step::leave_before_rest(model, state, &drive);
             state.time = rests_until(model, state, &drive, time + size).unwrap_or(time);
             let remaining = size - (state.time - time);
@@ -78,10 +70,7 @@ pub(crate) fn advance(
             if exact_step::step_exactly(model, state, workspace, &drive, remaining) {
                 return Ok(());
             }
-            let grid = Grid {
-                recurs,
-                ..Grid::over(state.time, remaining)
-            };
+            let grid = Grid { recurs, ..Grid::over(state.time, remaining) };
             // A blow would make more of an error than it is here.
             let never_opened = state.is_closed() && !state.has_switched();
             (grid, driven && never_opened)
@@ -184,19 +173,10 @@ fn step_by<const EXTREMES: bool>(
         go_ahead(model, motion, workspace, until, extremes.as_mut())?;
     } else {
         workspace.former.end = motion.end;
-        let gone_back = if ahead {
-            go_back(model, motion, workspace)
-        } else {
-            Ok(())
-        };
+        let gone_back = if ahead { go_back(model, motion, workspace) } else { Ok(()) };
         // One after a time without changes is none that recurs.
         let driven = !ahead && motion.size > 0.0;
-        let steps = Steps::Exactly {
-            time,
-            size,
-            recurs: !driven || size == motion.size,
-            driven,
-        };
+        let steps = Steps::Exactly { time, size, recurs: !driven || size == motion.size, driven };
         let done = gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut()));
         done.inspect_err(|_| {
             motion.end = workspace.former.end;
@@ -288,12 +268,7 @@ fn go_on(
     if size <= 0.0 {
         return Ok(());
     }
-    let steps = Steps::Exactly {
-        time,
-        size,
-        recurs: false,
-        driven: false,
-    };
+    let steps = Steps::Exactly { time, size, recurs: false, driven: false };
     advance(model, state, workspace, drive, steps, None)
 }
 
@@ -363,13 +338,7 @@ fn take_steps(
             motion.start = motion.end;
             continue;
         }
-        let Motion {
-            start,
-            end,
-            dense,
-            drive,
-            ..
-        } = motion;
+        let Motion { start, end, dense, drive, .. } = motion;
         start.copy(end, model.modes.len(), model.links.len());
         let until = time;
         let steps = Steps::Own { until, dense, start };

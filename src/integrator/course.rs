@@ -89,10 +89,7 @@ fn pairs(values: &[f64]) -> impl Iterator<Item = (f64, f64)> {
 /// Whether a polynomial over a step rises or falls throughout, as its steepest terms show.
 fn is_monotone(polynomial: &Prediction) -> bool {
     let [_, slope, bends @ ..] = polynomial;
-    let most = bends
-        .iter()
-        .zip(2_u8..)
-        .fold(0.0, |most, (bend, power)| most + f64::from(power) * bend.abs());
+    let most = bends.iter().zip(2_u8..).fold(0.0, |most, (bend, power)| most + f64::from(power) * bend.abs());
     // Beyond what rounding makes of the sum.
     slope.abs() > 1.001 * most
 }
@@ -106,15 +103,9 @@ mod tests {
         for (a, b) in [(-0.9, 0.3), (0.05, 0.2), (0.1, 0.101), (-0.7, -0.6)] {
             // (z - a) (z - b) is its slope.
             let polynomial = [0.0, a * b, -0.5 * (a + b), 1.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-            let found: Vec<f64> = turning_points(Simd::Portable, &polynomial)
-                .iter()
-                .map(|y| 2.0 * y + 1.0)
-                .collect();
+            let found: Vec<f64> = turning_points(Simd::Portable, &polynomial).iter().map(|y| 2.0 * y + 1.0).collect();
             let near = |(found, expected): (&f64, f64)| (found - expected).abs() < 1e-8;
-            assert!(
-                found.len() == 2 && found.iter().zip([a, b]).all(near),
-                "{found:?}, not {a} and {b}"
-            );
+            assert!(found.len() == 2 && found.iter().zip([a, b]).all(near), "{found:?}, not {a} and {b}");
         }
     }
 }

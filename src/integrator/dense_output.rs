@@ -55,13 +55,7 @@ impl DenseOutput {
         finite(slip)
             && finite(dissipated)
             && links.iter().all(|link| {
-                let DenseLink {
-                    force,
-                    approach,
-                    rate,
-                    turns,
-                    passages,
-                } = link;
+                let DenseLink { force, approach, rate, turns, passages } = link;
                 [force, approach, rate].into_iter().all(finite) && turns.is_sound() && passages.is_sound()
             })
     }

@@ -33,10 +33,7 @@ impl ForceError {
             return;
         };
         let energies = self.deviation.energies(slowest).zip(shape);
-        let energy: f64 = energies
-            .filter(|(_, shape)| **shape != 0.0)
-            .map(|(energy, _)| energy)
-            .sum();
+        let energy: f64 = energies.filter(|(_, shape)| **shape != 0.0).map(|(energy, _)| energy).sum();
         if *by_impulse == 0.0 || energy > HIDDEN {
             return;
         }
@@ -54,10 +51,7 @@ impl ForceError {
 
     /// The force that the deviation makes in the contacts that conduct is part of the estimate.
     pub(crate) fn note_deviation(&mut self, links: &[Link], force_scale: f64) {
-        let conducting = links
-            .iter()
-            .zip(&self.forces)
-            .filter(|(link, _)| link.circuit.is_some());
+        let conducting = links.iter().zip(&self.forces).filter(|(link, _)| link.circuit.is_some());
         let most = conducting.fold(0.0_f64, |most, (_, force)| most.max(force.abs()));
         let error = self.size * most / force_scale.max(self.greatest);
         self.by_deviation = self.by_deviation.max(error.min(f64::MAX));
@@ -81,11 +75,7 @@ impl ForceError {
         let lanes = free.q_from_q.iter().zip(&free.q_from_v).zip(&slowest.omega_squared);
         let mut by_force = [0.0; MODES];
         for (by_force, ((q_from_q, q_from_v), omega_squared)) in by_force.iter_mut().zip(lanes) {
-            *by_force = if *omega_squared > 0.0 {
-                (1.0 - q_from_q) / omega_squared
-            } else {
-                0.5 * q_from_v * q_from_v
-            };
+            *by_force = if *omega_squared > 0.0 { (1.0 - q_from_q) / omega_squared } else { 0.5 * q_from_v * q_from_v };
         }
         let before = mem::replace(&mut self.forces, [0.0; MAX_LINKS]);
         let (mut closed, mut drawn) = (false, false);
@@ -99,11 +89,7 @@ impl ForceError {
             };
             let (y, rate) = (dot::<MODES, A>(shape, &next_q), dot::<MODES, A>(shape, &next_v));
             // The force at the end is that of the law at the motion that the mean force causes.
-            let Tangent {
-                stiffness,
-                damping,
-                gain,
-            } = tangent;
+            let Tangent { stiffness, damping, gain } = tangent;
             // A magnet draws more the further it has moved; bounded, as the rule fails at -2.
             let gain = if stiffness < 0.0 { -gain.min(1.0) } else { gain };
             *force = -(stiffness * y + damping * rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
@@ -124,12 +110,7 @@ impl ForceError {
     /// Brings it back to size 1, the root of its energy; returns what it was.
     #[inline(always)]
     fn normalise(&mut self, slowest: &Slowest) -> f64 {
-        let size = self
-            .deviation
-            .energies(slowest)
-            .sum::<f64>()
-            .sqrt()
-            .max(f64::MIN_POSITIVE);
+        let size = self.deviation.energies(slowest).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
         let inverse = 1.0 / size;
         let Deviation { q, v } = &mut self.deviation;
         (*q, *v) = (scaled(q, inverse), scaled(v, inverse));
@@ -149,11 +130,7 @@ mod tests {
     /// Once it were not a number, every relay would be announced from then on, and its saved state refused.
     #[test]
     fn a_step_of_unknown_error_leaves_the_estimate_sound() {
-        let modes = [Mode {
-            omega_squared: 1.0,
-            tip: 1.0,
-            ..Mode::default()
-        }];
+        let modes = [Mode { omega_squared: 1.0, tip: 1.0, ..Mode::default() }];
         let slowest = Slowest::of(&modes, &[Port::new(&modes, |mode| mode.tip)]);
         let free = slowest.free(|_, mode| FreeMotion::new(mode.omega_squared, mode.damping, 0.1));
         let mut of_steps = ForceError::default();
@@ -171,21 +148,12 @@ mod tests {
     /// A mode that lasts, of another body, would hide what grows at a contact once its own have faded.
     #[test]
     fn a_deviation_that_has_faded_at_a_contact_begins_there_anew() {
-        let of = |damping, tip, armature| Mode {
-            omega_squared: 1.0,
-            damping,
-            tip,
-            armature,
-            ..Mode::default()
-        };
+        let of = |damping, tip, armature| Mode { omega_squared: 1.0, damping, tip, armature, ..Mode::default() };
         let modes = [of(1.0, 1.0, 0.0), of(0.0, 0.0, 1.0)];
         let ports = [|mode: &Mode| mode.tip, |mode: &Mode| mode.armature].map(|place| Port::new(&modes, place));
         let slowest = Slowest::of(&modes, &ports);
         let free = slowest.free(|_, mode| FreeMotion::new(mode.omega_squared, mode.damping, 0.1));
-        let mut error = ForceError {
-            size: 1.0,
-            ..ForceError::default()
-        };
+        let mut error = ForceError { size: 1.0, ..ForceError::default() };
         let part = |error: &ForceError| error.deviation.energies(&slowest).next().unwrap();
         error.begin(&slowest, 0);
         error.begin(&slowest, 1);

@@ -30,8 +30,7 @@ impl Stepper<'_> {
     }
 
     fn try_with_constant_force(&mut self, trial: &mut Trial<SHORT>, target: &Target) -> Result<StepOutcome, StepError> {
-        self.solve(trial, target)
-            .ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
+        self.solve(trial, target).ok_or_else(|| self.error(StepErrorCause::NotFinite))?;
         self.commit(trial, target, true)?;
         let mut switched = false;
         for index in 0..self.model.links.len() {
@@ -40,23 +39,12 @@ impl Stepper<'_> {
         self.model.settle_friction(self.state);
         // No polynomial to predict the next step with.
         self.state.lengths.last = 0.0;
-        Ok(StepOutcome {
-            accepted: true,
-            switched,
-            growth: 2.0,
-            length: target.length,
-        })
+        Ok(StepOutcome { accepted: true, switched, growth: 2.0, length: target.length })
     }
 
     /// Solves for the constant forces of the step to the target; friction keeps the force it has.
     fn solve(&mut self, trial: &mut Trial<SHORT>, target: &Target) -> Option<()> {
-        let Self {
-            model,
-            state,
-            workspace,
-            drive,
-            ..
-        } = self;
+        let Self { model, state, workspace, drive, .. } = self;
         let (room, search) = Rooms::<SHORT>::parts(*workspace);
         search.looked = None;
         let Room { cache, scratch, .. } = room;
@@ -77,11 +65,7 @@ impl Stepper<'_> {
             let (moved, mean) = (nodes.end.approach - at.approach, 0.5 * (at.rate + nodes.end.rate));
             let (rounding, _) = motion_rounding(model, (link, at), state);
             // Of a step of femtoseconds a contact with much damping would make a force of that rounding.
-            let speed = if (moved - mean * target.length).abs() <= rounding {
-                mean
-            } else {
-                moved / target.length
-            };
+            let speed = if (moved - mean * target.length).abs() <= rounding { mean } else { moved / target.length };
             let [from, to] = [at.approach, nodes.end.approach].map(|deviation| link.approach + deviation);
             Some(link.contact()?.mean_force(from, to, speed))
         };
@@ -199,10 +183,7 @@ mod tests {
                     // Each step rounds displacement and velocity of each mode, sums of two products and a load.
                     let rounding = 4.0 * f64::EPSILON * model.modes.len() as f64 * start;
                     let made = energy - before;
-                    assert!(
-                        made <= rounding,
-                        "{step} s, {damping} s, step {k}: {made:e} J of {start:e} J made"
-                    );
+                    assert!(made <= rounding, "{step} s, {damping} s, step {k}: {made:e} J of {start:e} J made");
                     if damping == 0.0 {
                         assert!(made >= -rounding, "{step} s, step {k}: {made:e} J of {start:e} J lost");
                     }

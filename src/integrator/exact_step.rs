@@ -147,12 +147,7 @@ pub(crate) fn step_ahead(
             }
             *dense = DenseOutput::default();
             let [contact, ..] = &mut dense.links;
-            *contact = DenseLink {
-                force,
-                approach: indentation,
-                rate,
-                ..DenseLink::default()
-            };
+            *contact = DenseLink { force, approach: indentation, rate, ..DenseLink::default() };
             state.time = time;
             state.force_error.add(ratio * allowed, model.force_scale);
             state.lengths.long = StepOutcome::accepted(length, requested, growth::<LONG>(ratio)).length;
@@ -210,12 +205,7 @@ impl<'a> Start<'a> {
         closed_loop.add_particular(free, &steady, -1.0);
         // Not `>=`, so that NaN does not pass.
         let stays_closed = !watched || closed_loop.swing(free, phasor, margin) < margin;
-        stays_closed.then_some(Self {
-            closed_loop,
-            law,
-            steady,
-            phasor,
-        })
+        stays_closed.then_some(Self { closed_loop, law, steady, phasor })
     }
 
     /// Indentation and its velocity at the nodes, under constant loads, from the motion of the tip relative to the

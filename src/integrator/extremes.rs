@@ -18,10 +18,7 @@ pub struct Range {
 
 impl Range {
     fn at(force: f64) -> Self {
-        Self {
-            least: force,
-            greatest: force,
-        }
+        Self { least: force, greatest: force }
     }
 
     /// Includes a force (N).
@@ -123,15 +120,9 @@ impl Extremes {
             };
             courses.iter().flatten().map(of_one).sum::<f64>()
         };
-        let turns = courses
-            .iter()
-            .flatten()
-            .flat_map(|(_, _, turns, _)| turns.between(from, to));
+        let turns = courses.iter().flatten().flat_map(|(_, _, turns, _)| turns.between(from, to));
         let grid = (0..=SAMPLES).map(|n| from + (to - from) * f64::from(n) / f64::from(SAMPLES));
-        let least = grid
-            .chain(turns)
-            .map(|y| (y, conductance(y)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let least = grid.chain(turns).map(|y| (y, conductance(y))).min_by(|a, b| a.1.total_cmp(&b.1));
         let Some((mut y, mut least)) = least else {
             return;
         };

@@ -33,22 +33,12 @@ pub struct Target {
 impl Grid {
     /// A communication step from `start` over `size` (s).
     pub fn over(start: f64, size: f64) -> Self {
-        Self {
-            start,
-            size,
-            done: 0.0,
-            free: false,
-            recurs: true,
-        }
+        Self { start, size, done: 0.0, free: false, recurs: true }
     }
 
     /// One free step from `start` (s), expected to be about `size` (s) long.
     pub fn free(start: f64, size: f64) -> Self {
-        Self {
-            free: true,
-            recurs: false,
-            ..Self::over(start, size)
-        }
+        Self { free: true, recurs: false, ..Self::over(start, size) }
     }
 
     /// The end of the communication step, s.
@@ -58,11 +48,7 @@ impl Grid {
 
     /// Remaining time, s.
     pub fn remaining(&self) -> f64 {
-        if self.free {
-            f64::INFINITY
-        } else {
-            (1.0 - self.done) * self.size
-        }
+        if self.free { f64::INFINITY } else { (1.0 - self.done) * self.size }
     }
 
     /// Largest ratio of a length to the one before it, 1.
@@ -79,12 +65,7 @@ impl Grid {
         if let Some(corner) = corner.filter(|corner| *corner < self.start + done * self.size) {
             return self.cut(corner - time, corner);
         }
-        Target {
-            length: (done - self.done) * self.size,
-            recurring: true,
-            done,
-            time: self.time(done),
-        }
+        Target { length: (done - self.done) * self.size, recurring: true, done, time: self.time(done) }
     }
 
     /// As [`Grid::target`], with a length of free steps, that may reach beyond the communication step.
@@ -102,32 +83,14 @@ impl Grid {
             let corner = if self.free { corner } else { corner.min(end) };
             return self.cut(corner - time, corner);
         }
-        Target {
-            length,
-            recurring: true,
-            done,
-            time: time + length,
-        }
+        Target { length, recurring: true, done, time: time + length }
     }
 
     /// The step of `length` (s) that ends at `time` (s), off the grid.
     pub fn cut(&self, length: f64, time: f64) -> Target {
-        let done = if self.free || time >= self.end() {
-            1.0
-        } else {
-            (self.done + length / self.size).min(1.0)
-        };
-        let time = if done == 1.0 && !self.free {
-            self.time(done)
-        } else {
-            time
-        };
-        Target {
-            length,
-            recurring: false,
-            done,
-            time,
-        }
+        let done = if self.free || time >= self.end() { 1.0 } else { (self.done + length / self.size).min(1.0) };
+        let time = if done == 1.0 && !self.free { self.time(done) } else { time };
+        Target { length, recurring: false, done, time }
     }
 
     /// The next point of the dyadic grid with cells of at most `requested` seconds, as fraction of the communication step; `None` off
@@ -158,11 +121,7 @@ pub(crate) fn round_down(length: f64) -> f64 {
 fn round_up(length: f64) -> f64 {
     let below = round_down(length);
     let half = 1_u64 << (f64::MANTISSA_DIGITS - 2);
-    if below == length {
-        length
-    } else {
-        f64::from_bits(below.to_bits() + half)
-    }
+    if below == length { length } else { f64::from_bits(below.to_bits() + half) }
 }
 
 #[cfg(test)]
@@ -172,17 +131,11 @@ mod tests {
     #[test]
     fn after_an_event_anywhere_steps_have_lengths_that_recur() {
         for k in 1..1000 {
-            let grid = Grid {
-                done: f64::from(k) / 1000.0,
-                ..Grid::over(0.5, 1e-5)
-            };
+            let grid = Grid { done: f64::from(k) / 1000.0, ..Grid::over(0.5, 1e-5) };
             let target = grid.target(1e-7 * f64::from(k % 90 + 1), grid.time(grid.done), None);
             let part = target.done - grid.done;
             let fraction = part.log2().fract() == 0.0 && target.length == part * grid.size;
-            assert!(
-                target.recurring && (fraction || target.length == round_down(target.length)),
-                "{k}: {target:?}"
-            );
+            assert!(target.recurring && (fraction || target.length == round_down(target.length)), "{k}: {target:?}");
         }
     }
 
@@ -192,10 +145,7 @@ mod tests {
         for k in 0..1000 {
             // From 1 to 16 us.
             let size = 1e-6 * 16_f64.powf(f64::from(k) / 1000.0);
-            let mut grid = Grid {
-                recurs: false,
-                ..Grid::over(0.5, size)
-            };
+            let mut grid = Grid { recurs: false, ..Grid::over(0.5, size) };
             let mut time = grid.start;
             while grid.done < 1.0 {
                 let target = grid.target(0.7e-6 * f64::from(k % 7 + 1), time, None);

@@ -15,9 +15,7 @@ impl Stepper<'_> {
     /// The length of a leap from here, s: where a contact has just closed, and nothing that is known ends it.
     pub(super) fn leap_length(&mut self) -> Option<f64> {
         let longest = self.workspace.longest_leap?;
-        let State {
-            time, links, lengths, ..
-        } = &mut *self.state;
+        let State { time, links, lengths, .. } = &mut *self.state;
         let has_closed = links.iter().any(|at| at.closed && at.last_closing == Some(*time));
         if !has_closed || self.progress.conserves {
             return None;
@@ -49,10 +47,7 @@ impl Stepper<'_> {
 
     /// One step over `length` (s) after a closing, by the root of the time since: accepted, or to be tried again with another length.
     pub(super) fn leap(&mut self, length: f64) -> Result<(), StepError> {
-        let target = Target {
-            recurring: true,
-            ..self.grid.cut(length, self.state.time + length)
-        };
+        let target = Target { recurring: true, ..self.grid.cut(length, self.state.time + length) };
         self.workspace.long.cache.collocation = &LONG_BY_ROOT;
         let done = self.with_trial(|stepper, trial| stepper.try_leap(trial, &target));
         self.workspace.long.cache.collocation = &LONG_BY_TIME;
@@ -66,13 +61,11 @@ impl Stepper<'_> {
         let locator = self.locator(trial, length);
         let mut links = locator.whole.state.links.iter().take(count).enumerate();
         let mut stay = || {
-            links.all(|(index, at)| {
-                if at.closed {
-                    locator.first_open(index).is_none()
-                } else {
-                    locator.near(index).is_none()
-                }
-            })
+            links.all(
+                |(index, at)| {
+                    if at.closed { locator.first_open(index).is_none() } else { locator.near(index).is_none() }
+                },
+            )
         };
         let is_possible = ratio <= 1.0 && stay();
         if !is_possible || !self.commit(trial, target, false)? {
@@ -115,10 +108,7 @@ mod tests {
             let missed = (1.0 - dot::<LONG, Separate>(&root, &LONG_BY_TIME.at_start)).abs();
             // The polynomials miss 0.14 to 0.22 of the power of the ellipse.
             assert!(missed * accuracy <= 1.1, "{accuracy:e}: {length} misses {missed:e}");
-            assert!(
-                length == WORTH || missed * accuracy > 0.7,
-                "{accuracy:e}: {length} misses {missed:e}"
-            );
+            assert!(length == WORTH || missed * accuracy > 0.7, "{accuracy:e}: {length} misses {missed:e}");
         }
     }
 }

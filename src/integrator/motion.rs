@@ -128,40 +128,15 @@ impl Motion {
 
     /// The last integrated state at or before the communication point.
     pub fn state(&self) -> &State {
-        if self.end.time <= self.time {
-            &self.end
-        } else {
-            &self.start
-        }
+        if self.end.time <= self.time { &self.end } else { &self.start }
     }
 
     /// Whether the values are consistent: finite, with times in order (check of a deserialised state).
     pub fn is_sound(&self) -> bool {
-        let Self {
-            time,
-            current,
-            current_rate,
-            size,
-            extremes,
-            drive,
-            start,
-            end,
-            dense,
-        } = self;
-        let numbers = [
-            *time,
-            *current,
-            *current_rate,
-            *size,
-            drive.jerk,
-            drive.acceleration(start.time),
-        ];
+        let Self { time, current, current_rate, size, extremes, drive, start, end, dense } = self;
+        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.acceleration(start.time)];
         let extremes = extremes.iter().flat_map(Extremes::numbers);
-        numbers
-            .into_iter()
-            .chain(drive.velocities)
-            .chain(extremes)
-            .all(f64::is_finite)
+        numbers.into_iter().chain(drive.velocities).chain(extremes).all(f64::is_finite)
             && *size >= 0.0
             && dense.is_sound()
             && start.is_sound()
@@ -250,10 +225,7 @@ impl Motion {
             return (0.0, acceleration);
         };
         let branch = law.closed_branch(link.approach + state.approach, state.rate);
-        (
-            branch.stiffness * state.rate + branch.damping * acceleration,
-            acceleration,
-        )
+        (branch.stiffness * state.rate + branch.damping * acceleration, acceleration)
     }
 
     /// Second derivative of the approach of a link at the end of a step, m/s2.
@@ -314,23 +286,13 @@ impl Motion {
         let of_slip = |y: f64| value_and_slope(&self.dense.slip.slip, y).1 / self.length();
         if !contact.closed {
             let slip = dense.map_or(-along.rate, |(_, y)| of_slip(y));
-            return (
-                0.0,
-                Slip {
-                    way: slip,
-                    ..Slip::default()
-                },
-            );
+            return (0.0, Slip { way: slip, ..Slip::default() });
         }
         let (force, rate, slip);
         if let Some((dense, y)) = dense {
             let (value, slope) = value_and_slope(&dense.force, y);
             (force, rate) = (link.force + value, slope / self.length());
-            slip = if state.slip.phase == Phase::Stick {
-                0.0
-            } else {
-                of_slip(y)
-            };
+            slip = if state.slip.phase == Phase::Stick { 0.0 } else { of_slip(y) };
         } else {
             force = along.force;
             let d = model.preload.indentation + contact.approach;
@@ -349,12 +311,7 @@ impl Motion {
                 slip = 0.0;
             }
         }
-        let slip = Slip {
-            way: slip,
-            distance: slip.abs(),
-            dissipated: (force * slip).abs(),
-            ..Slip::default()
-        };
+        let slip = Slip { way: slip, distance: slip.abs(), dissipated: (force * slip).abs(), ..Slip::default() };
         (rate, slip)
     }
 
@@ -368,9 +325,8 @@ impl Motion {
         };
         for (link, at) in model.links.iter().zip(&state.links) {
             let force = link.sense * (at.force - link.force);
-            for (acceleration, b) in accelerations
-                .iter_mut()
-                .zip(model.ports.get(link.port).iter().flat_map(|port| &port.shape))
+            for (acceleration, b) in
+                accelerations.iter_mut().zip(model.ports.get(link.port).iter().flat_map(|port| &port.shape))
             {
                 *acceleration += b * force;
             }
@@ -404,11 +360,7 @@ impl Motion {
 
     /// Displacement (m) and velocity (m/s) of the fixed contact.
     pub fn support(&self) -> (f64, f64) {
-        let State {
-            displacements: [displacement, ..],
-            velocities: [velocity, ..],
-            ..
-        } = self.state();
+        let State { displacements: [displacement, ..], velocities: [velocity, ..], .. } = self.state();
         (*displacement, *velocity)
     }
 

@@ -41,9 +41,7 @@ impl Recorder<'_> {
             }
             extremes.add_pair_at(model, |index| state.links.get(index).map_or(0.0, |at| at.force));
         }
-        let State {
-            links, circuits, time, ..
-        } = state;
+        let State { links, circuits, time, .. } = state;
         circuits.note(&model.links, links.iter().map(|link| link.force), *time);
     }
 
@@ -117,8 +115,6 @@ impl Recorder<'_> {
             extremes.add_pair(model, course, (-1.0, 0.0));
         }
         let passages = passages.each_ref();
-        state
-            .circuits
-            .pass(&model.links, &passages, (target.time, target.length), 0.0);
+        state.circuits.pass(&model.links, &passages, (target.time, target.length), 0.0);
     }
 }

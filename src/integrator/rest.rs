@@ -73,11 +73,7 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64)
             .fold(0.0, |sum, (link, force)| sum + force * model.displacement(link.port, i));
         let load = by_links - mode.participation * acceleration - mode.omega_squared * at.q
             + axial.next().copied().unwrap_or_default();
-        let strain = if load == 0.0 {
-            0.0
-        } else {
-            load * load / mode.omega_squared
-        };
+        let strain = if load == 0.0 { 0.0 } else { load * load / mode.omega_squared };
         energy += 0.5 * (strain + at.v * at.v);
         // The first modes reveal most motions: return early.
         if energy.is_nan() || energy > least {

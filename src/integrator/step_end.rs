@@ -100,20 +100,12 @@ impl Stepper<'_> {
                 || error <= of_rounding::<S>(model, state, trial, MOTION_ROUNDING)
         };
         if (event || end.is_some()) && !fits() {
-            return Err(Shorter {
-                error,
-                allowed,
-                before_event: true,
-            });
+            return Err(Shorter { error, allowed, before_event: true });
         }
         // No blow follows a change between stick and slip.
         let inherited = INHERITED * trial.inner_error.total;
         if change.is_some() && inherited > model.tolerance.step.max(trial.rounding) && !is_shortest {
-            return Err(Shorter {
-                error: trial.inner_error.total,
-                allowed: model.tolerance.step,
-                before_event: false,
-            });
+            return Err(Shorter { error: trial.inner_error.total, allowed: model.tolerance.step, before_event: false });
         }
         let mut first = closes;
         for (index, latest) in suspects.iter().enumerate() {
@@ -125,11 +117,7 @@ impl Stepper<'_> {
         }
         Ok(match (first, end) {
             (Some(first), Some(end)) if first.time <= end => Some(first),
-            (_, Some(time)) => Some(Cut {
-                at: time - state.time,
-                time,
-                event: Event::Read,
-            }),
+            (_, Some(time)) => Some(Cut { at: time - state.time, time, event: Event::Read }),
             (first, None) => first,
         })
     }
@@ -197,10 +185,7 @@ impl Stepper<'_> {
         } else {
             requested
         };
-        StepOutcome {
-            switched: true,
-            ..self.reject(length)
-        }
+        StepOutcome { switched: true, ..self.reject(length) }
     }
 
     /// Shortens a trial of `length` seconds to end `at` seconds after its start.

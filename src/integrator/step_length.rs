@@ -55,11 +55,7 @@ impl StepOutcome {
             // Leaving a kink just behind it, a step would have any factor.
             growth: growth.min(MOST_GROWTH),
             // A step shortened by the grid keeps the size proposed before.
-            length: if length < SAFETY * requested {
-                requested.max(next)
-            } else {
-                next
-            },
+            length: if length < SAFETY * requested { requested.max(next) } else { next },
         }
     }
 }
@@ -70,33 +66,14 @@ const MOST_GROWTH: f64 = LONGER * STEP_GROWTH;
 impl StepLengths {
     /// All of this length (s), at the start.
     pub fn new(length: f64) -> Self {
-        Self {
-            short: length,
-            long: length,
-            flight: length,
-            leap: length,
-            last: 0.0,
-            after_change: [0.0; 2],
-        }
+        Self { short: length, long: length, flight: length, leap: length, last: 0.0, after_change: [0.0; 2] }
     }
 
     /// Whether a simulation can reach these numbers.
     pub(crate) fn is_sound(&self) -> bool {
-        let Self {
-            short,
-            long,
-            flight,
-            leap,
-            last,
-            after_change,
-        } = self;
-        [short, flight, leap]
-            .into_iter()
-            .all(|length| *length > 0.0 && length.is_finite())
-            && [long, last]
-                .into_iter()
-                .chain(after_change)
-                .all(|length| (0.0..f64::INFINITY).contains(length))
+        let Self { short, long, flight, leap, last, after_change } = self;
+        [short, flight, leap].into_iter().all(|length| *length > 0.0 && length.is_finite())
+            && [long, last].into_iter().chain(after_change).all(|length| (0.0..f64::INFINITY).contains(length))
     }
 
     /// The longest step that is possible now, s.
@@ -164,11 +141,7 @@ impl StepLengths {
 
 /// Factor on the length after a step of the relative error `ratio`.
 pub(crate) fn growth<const S: usize>(ratio: f64) -> f64 {
-    if ratio < ROUNDED {
-        MOST_GROWTH
-    } else {
-        (SAFETY * step_factor::<S>(ratio)).max(MOST_SHRINK)
-    }
+    if ratio < ROUNDED { MOST_GROWTH } else { (SAFETY * step_factor::<S>(ratio)).max(MOST_SHRINK) }
 }
 
 /// The relative error after which [`growth`] is this factor.
@@ -200,15 +173,10 @@ mod tests {
     #[test]
     fn a_step_grows_by_the_factor_of_its_error() {
         for factor in [1.0, 1.5, 2.0] {
-            let of_both = [
-                growth::<SHORT>(error_of_growth::<SHORT>(factor)),
-                growth::<LONG>(error_of_growth::<LONG>(factor)),
-            ];
+            let of_both =
+                [growth::<SHORT>(error_of_growth::<SHORT>(factor)), growth::<LONG>(error_of_growth::<LONG>(factor))];
             // A power and a root round.
-            assert!(
-                of_both.iter().all(|growth| (growth / factor - 1.0).abs() < 1e-14),
-                "{of_both:?}"
-            );
+            assert!(of_both.iter().all(|growth| (growth / factor - 1.0).abs() < 1e-14), "{of_both:?}");
         }
     }
 }

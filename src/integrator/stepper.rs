@@ -74,24 +74,14 @@ impl Stepper<'_> {
     where
         Workspace: Rooms<S>,
     {
-        let Self {
-            model,
-            state,
-            workspace,
-            drive,
-            ..
-        } = self;
+        let Self { model, state, workspace, drive, .. } = self;
         let (room, search) = workspace.parts();
         search.looked = None;
         let Room { cache, scratch, .. } = room;
         let prepared = cache.prepare(state.time, target.length, target.recurring, model);
         let source = Source::Laws(model.tolerance.newton);
         let computed = compute(model, state, drive, prepared, source, trial, scratch);
-        let iterations = if computed.is_some() {
-            trial.iterations
-        } else {
-            ITERATIONS
-        };
+        let iterations = if computed.is_some() { trial.iterations } else { ITERATIONS };
         search.work += work::<S>(model, target.recurring) + iterations * (S * S) as u64;
         computed
     }
@@ -132,11 +122,8 @@ impl Stepper<'_> {
             if ratio < inside { inside } else { ratio }
         });
         let of_inside = closed && ratio == inside;
-        let (error, rounding) = if of_inside {
-            (inside * allowed, FREE_ROUNDING)
-        } else {
-            (trial.error.total, MOTION_ROUNDING)
-        };
+        let (error, rounding) =
+            if of_inside { (inside * allowed, FREE_ROUNDING) } else { (trial.error.total, MOTION_ROUNDING) };
         let fails = ratio > 1.0 && (closed || inside < 1.0);
         // What does not shrink with the step would keep one that is far too short from growing to the next length of the grid.
         let next = error_of_growth::<S>(self.grid.spacing() / SAFETY);
@@ -206,15 +193,7 @@ impl Stepper<'_> {
             self.state.energy_surplus += surplus;
         }
         let passing = self.passing();
-        let Self {
-            model,
-            state,
-            workspace,
-            drive,
-            recorder,
-            progress,
-            ..
-        } = self;
+        let Self { model, state, workspace, drive, recorder, progress, .. } = self;
         let cache = &Rooms::<S>::room(*workspace).cache;
         state.force_error.add(trial.error.with(passing), model.force_scale);
         recorder.note_step((*model, &mut **state), cache.collocation, trial, target, &passages);
@@ -223,11 +202,7 @@ impl Stepper<'_> {
             dense.slip = slip;
         }
         self.grid.done = target.done;
-        *progress = Progress {
-            driven: progress.driven,
-            conserves: progress.conserves,
-            ..Progress::default()
-        };
+        *progress = Progress { driven: progress.driven, conserves: progress.conserves, ..Progress::default() };
         if progress.conserves {
             conservation::settle(model, state, target.length);
         }
@@ -253,12 +228,7 @@ impl Stepper<'_> {
     pub(super) fn reject(&mut self, length: f64) -> StepOutcome {
         self.state.rejected_steps += 1;
         self.progress.refusals += 1;
-        StepOutcome {
-            accepted: false,
-            switched: false,
-            growth: 1.0,
-            length,
-        }
+        StepOutcome { accepted: false, switched: false, growth: 1.0, length }
     }
 
     /// Factor on the error that the contact's damper takes back.
@@ -287,9 +257,6 @@ impl Stepper<'_> {
     }
 
     pub(super) fn error(&self, cause: StepErrorCause) -> StepError {
-        StepError {
-            time: self.state.time,
-            cause,
-        }
+        StepError { time: self.state.time, cause }
     }
 }

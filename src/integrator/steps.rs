@@ -84,9 +84,7 @@ impl Stepper<'_> {
     where
         Workspace: Rooms<S>,
     {
-        let requested = requested
-            .min(self.model.longest_step(self.state.time))
-            .max(self.shortest());
+        let requested = requested.min(self.model.longest_step(self.state.time)).max(self.shortest());
         let corner = self.model.generator.next_break(self.state.time);
         let target = self.grid.target(requested, self.state.time, corner);
         self.with_trial(|stepper, trial: &mut Trial<S>| stepper.try_step(trial, &target, requested, corner))
@@ -156,12 +154,7 @@ impl Stepper<'_> {
             let next = transition::step_after_jump(self.model, self.state);
             let lengths = &mut self.state.lengths;
             (lengths.long, lengths.flight, lengths.last) = (lengths.long.min(next), lengths.flight.min(next), 0.0);
-            return Ok(StepOutcome {
-                accepted: true,
-                switched: false,
-                growth: 1.0,
-                length: requested.min(next),
-            });
+            return Ok(StepOutcome { accepted: true, switched: false, growth: 1.0, length: requested.min(next) });
         }
         Ok(StepOutcome::accepted(target.length, requested, growth))
     }

@@ -24,13 +24,7 @@ impl Tolerance {
         let relative = relative.min(LOOSEST);
         let force = relative * force_scale;
         let step = SHARE * force;
-        Self {
-            relative,
-            force,
-            step,
-            newton: NEWTON * step,
-            at_event: AT_EVENT * step,
-        }
+        Self { relative, force, step, newton: NEWTON * step, at_event: AT_EVENT * step }
     }
 
     /// In a contact force that is read and goes no further, where forces are as large as this (N).

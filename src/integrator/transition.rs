@@ -19,11 +19,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     };
     at.closed = !at.closed;
     let closed = at.closed;
-    log.record(log::Event {
-        time,
-        closes: closed,
-        link: index,
-    });
+    log.record(log::Event { time, closes: closed, link: index });
     let touch = link.contact().and_then(|law| law.power()).filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));
     if closed {
@@ -34,11 +30,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
         at.last_opening = Some(time);
     }
     state.lengths.last = 0.0;
-    state.lengths.short = if closed {
-        first_closed_step(model, state, index)
-    } else {
-        step_after_jump(model, state)
-    };
+    state.lengths.short = if closed { first_closed_step(model, state, index) } else { step_after_jump(model, state) };
     model.settle_friction(state);
 }
 
@@ -47,11 +39,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
 pub(crate) fn slide(model: &Model, state: &mut State, phase: Phase) {
     model.change_phase(state, phase);
     let first = *state.lengths.after_change(phase);
-    let length = if first > 0.0 {
-        first
-    } else {
-        step_after_jump(model, state)
-    };
+    let length = if first > 0.0 { first } else { step_after_jump(model, state) };
     state.lengths.long = state.lengths.long.min(length);
     state.lengths.short = state.lengths.short.min(length / WORTH);
 }
@@ -75,10 +63,7 @@ pub(crate) fn set_velocities(model: &Model, state: &mut State, drive: &Drive, lo
         if jump == 0.0 || link.contact().is_none() {
             continue;
         }
-        let (force, closed) = (
-            link.force_at(at.approach, at.rate),
-            link.engagement(at.approach, at.rate) > 0.0,
-        );
+        let (force, closed) = (link.force_at(at.approach, at.rate), link.engagement(at.approach, at.rate) > 0.0);
         if closed != at.closed {
             switch(model, state, index, log);
         }
@@ -106,10 +91,8 @@ pub(crate) fn set_coil(model: &Model, state: &mut State, coil: f64) {
 
 /// Steps begin anew as the force of a link has jumped.
 fn restart(model: &Model, state: &mut State, index: usize) {
-    (state.last_kink, state.kink_is_closing) = (
-        state.time,
-        state.links.iter().any(|link| link.last_closing == Some(state.time)),
-    );
+    (state.last_kink, state.kink_is_closing) =
+        (state.time, state.links.iter().any(|link| link.last_closing == Some(state.time)));
     state.lengths.last = 0.0;
     let next = first_closed_step(model, state, index);
     let lengths = &mut state.lengths;

@@ -125,10 +125,7 @@ impl Workspace {
 
     /// Allocates for the model.
     pub fn new(model: &Model) -> Self {
-        let oscillators = model
-            .closed_loop
-            .as_ref()
-            .map(|closed_loop| closed_loop.oscillators.len());
+        let oscillators = model.closed_loop.as_ref().map(|closed_loop| closed_loop.oscillators.len());
         let lengths = if oscillators.is_some() { LENGTHS } else { 0 };
         Self {
             short: Room::new(model, &OF_SHORT, &SHORT_BY_TIME),

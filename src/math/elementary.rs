@@ -8,11 +8,7 @@ const NEAREST: f64 = 1.5 * (1_u64 << 52) as f64;
 /// ln 2 and pi / 2 as sums of which the products with integers of up to 20 bits are exact but for the last one
 /// (W. J. Cody, W. Waite, Software Manual for the Elementary Functions, 1980; digits of fdlibm, Sun Microsystems, 1993).
 const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
-const HALF_PI: [f64; 3] = [
-    1.570_796_326_734_125_6,
-    6.077_100_506_303_966e-11,
-    2.022_266_248_795_950_6e-21,
-];
+const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
 /// Largest angle, rad.
 pub const LARGEST_ANGLE: f64 = 1e6;

@@ -50,22 +50,12 @@ impl<const N: usize> Roots<N> {
             // Their product is omega^2.
             slow[i] = if fast[i] > 0.0 { omega_squared[i] / fast[i] } else { 0.0 };
         }
-        Self {
-            creeps,
-            split,
-            slow,
-            fast,
-        }
+        Self { creeps, split, slow, fast }
     }
 }
 
 impl FreeMotion {
-    const AT_ONCE: Self = Self {
-        q_from_q: 1.0,
-        q_from_v: 0.0,
-        v_from_q: 0.0,
-        v_from_v: 1.0,
-    };
+    const AT_ONCE: Self = Self { q_from_q: 1.0, q_from_v: 0.0, v_from_q: 0.0, v_from_v: 1.0 };
 
     /// After the time `t` > 0 (s), for `omega_squared` >= 0 (1/s2) and `damping` c >= 0 (1/s).
     pub fn new(omega_squared: f64, damping: f64, t: f64) -> Self {
@@ -87,12 +77,7 @@ impl FreeMotion {
             v_from_v = decay * cos - half * q_from_v;
             q_from_q = decay * cos + half * q_from_v;
         }
-        Self {
-            q_from_q,
-            q_from_v,
-            v_from_q: -omega_squared * q_from_v,
-            v_from_v,
-        }
+        Self { q_from_q, q_from_v, v_from_q: -omega_squared * q_from_v, v_from_v }
     }
 
     /// Of several oscillators with these roots, each after its time, side by side.
@@ -104,20 +89,11 @@ impl FreeMotion {
         roots: &Roots<N>,
         times: &[f64; N],
     ) -> [Self; N] {
-        let Roots {
-            creeps,
-            split,
-            slow,
-            fast,
-        } = roots;
+        let Roots { creeps, split, slow, fast } = roots;
         // Where the difference of exponentials needs care, or the quotient of sine and angle.
         let is_easy = |i: usize| {
             let angle = split[i] * times[i];
-            if creeps[i] {
-                angle > 0.25
-            } else {
-                angle > 0.0 && angle < LARGEST_ANGLE
-            }
+            if creeps[i] { angle > 0.25 } else { angle > 0.0 && angle < LARGEST_ANGLE }
         };
         if !(0..N).all(is_easy) {
             return array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i]));

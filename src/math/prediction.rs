@@ -27,11 +27,7 @@ pub fn parabola_in_time(by_root: &Prediction) -> Prediction {
     let [value, by_root, half_curvature] = parabola_at_end(by_root);
     let (slope, half_curvature) = (0.5 * by_root, 0.25 * half_curvature - 0.125 * by_root);
     let mut parabola = [0.0; LONG + 1];
-    let middle = [
-        value - 0.5 * slope + 0.25 * half_curvature,
-        0.5 * (slope - half_curvature),
-        0.25 * half_curvature,
-    ];
+    let middle = [value - 0.5 * slope + 0.25 * half_curvature, 0.5 * (slope - half_curvature), 0.25 * half_curvature];
     parabola.iter_mut().zip(middle).for_each(|(to, from)| *to = from);
     parabola
 }

@@ -64,11 +64,7 @@ pub fn newton(f: impl Fn(f64) -> (f64, f64), a: (f64, f64), b: (f64, f64), resol
     // By halves alone 64 reach the resolution of numbers.
     for _ in 0..64 {
         let (value, slope) = f(x);
-        let end = if (value > 0.0) == (at_low > 0.0) {
-            &mut low
-        } else {
-            &mut high
-        };
+        let end = if (value > 0.0) == (at_low > 0.0) { &mut low } else { &mut high };
         *end = x;
         let (next, middle) = (x - value / slope, 0.5 * (low + high));
         let next = if low <= next && next <= high { next } else { middle };

@@ -49,10 +49,7 @@ impl Scene {
         let counted = effects.chatter && unknown;
         refuse(counted, "effects.chatter = true", "false", NO_RESISTANCE)?;
         // What the fixed contact's spring need not know is where others touch the moving one.
-        let springs = [
-            ("beam.file", &self.spring, true),
-            ("fixed.file", &self.fixed_spring, false),
-        ];
+        let springs = [("beam.file", &self.spring, true), ("fixed.file", &self.fixed_spring, false)];
         for (name, spring, moves) in springs {
             if let Some(spring) = spring
                 && let Shape::Modes(given) = &spring.shape
@@ -107,10 +104,5 @@ fn refuse(broken: bool, choice: &str, allowed: &'static str, (other, instead): B
     if !broken {
         return Ok(());
     }
-    Err(SceneError::NotTogether {
-        choice: choice.to_owned(),
-        allowed,
-        other: other.to_owned(),
-        instead,
-    })
+    Err(SceneError::NotTogether { choice: choice.to_owned(), allowed, other: other.to_owned(), instead })
 }

@@ -20,14 +20,8 @@ pub(crate) fn of_file<T, E: ToString>(
 ) -> Result<T, SceneError> {
     let file = path.display().to_string();
     match text {
-        Ok(text) => parse(&text).map_err(|error| SceneError::InFile {
-            file,
-            error: Box::new(error),
-        }),
-        Err(cause) => Err(SceneError::Unreadable {
-            file,
-            cause: cause.to_string(),
-        }),
+        Ok(text) => parse(&text).map_err(|error| SceneError::InFile { file, error: Box::new(error) }),
+        Err(cause) => Err(SceneError::Unreadable { file, cause: cause.to_string() }),
     }
 }
 
@@ -127,12 +121,7 @@ pub(crate) struct Entry<'a> {
 impl<'a> Entry<'a> {
     /// All of a text.
     pub(crate) fn whole(text: &'a str, table: &'a DeTable<'a>) -> Self {
-        Self {
-            text,
-            name: None,
-            place: 0..0,
-            table,
-        }
+        Self { text, name: None, place: 0..0, table }
     }
 
     pub(crate) fn values(&self) -> impl Iterator<Item = (&str, Value<'a>)> {
@@ -161,10 +150,7 @@ impl<'a> Entry<'a> {
         result.map_err(|error| {
             let error = match &self.name {
                 None => error,
-                Some(entry) => SceneError::InEntry {
-                    entry: entry.clone(),
-                    error: Box::new(error),
-                },
+                Some(entry) => SceneError::InEntry { entry: entry.clone(), error: Box::new(error) },
             };
             located(self.text, place, error)
         })
@@ -212,12 +198,8 @@ impl<'a> Entry<'a> {
     }
 
     pub(crate) fn required(&self, field: Field) -> Result<f64, SceneError> {
-        let missing = SceneError::MissingKey {
-            name: field.name,
-            allowed: "a number",
-        };
-        self.optional(field)?
-            .map_or_else(|| self.at(&self.place, Err(missing)), Ok)
+        let missing = SceneError::MissingKey { name: field.name, allowed: "a number" };
+        self.optional(field)?.map_or_else(|| self.at(&self.place, Err(missing)), Ok)
     }
 
     /// A value that is constant, or those at start and end.
@@ -254,10 +236,7 @@ impl<'a> Entry<'a> {
         let entries: Vec<_> = value.at(value.list(name, TABLES))?.collect();
         value.at(count(name, entries.len(), least))?;
         let entries = entries.iter().zip(1..).map(|(entry, number)| {
-            read(&Entry {
-                name: Some(format!("{name} {number}")),
-                ..entry.at(entry.table(name, TABLES))?
-            })
+            read(&Entry { name: Some(format!("{name} {number}")), ..entry.at(entry.table(name, TABLES))? })
         });
         entries.collect()
     }

@@ -122,11 +122,7 @@ impl SceneFile {
     /// The communication steps of the run: start time and length, s; the last ends with the run.
     pub fn steps(&self) -> impl Iterator<Item = (f64, f64)> {
         // A remainder due to rounding is not a step.
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a positive count, saturating"
-        )]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive count, saturating")]
         let count = (self.stop / self.communication_step - 1e-9).ceil().max(1.0) as u64;
         let point = |n: u64| (n as f64 * self.communication_step).min(self.stop);
         (0..count).map(move |n| (point(n), point(n + 1) - point(n)))
@@ -157,10 +153,7 @@ impl SceneFile {
         }
         let parsed = DeValue::parse(value);
         let node = parsed.unwrap_or_else(|_| Spanned::new(0..value.len(), DeValue::String(value.into())));
-        let value = Value {
-            text: value,
-            node: &node,
-        };
+        let value = Value { text: value, node: &node };
         match name {
             "stop" => self.stop = positive("stop", value)?,
             "communicationStep" => self.communication_step = positive("communicationStep", value)?,
@@ -195,9 +188,9 @@ impl SceneFile {
                 Ok(())
             }
             Group::IntegerParameter(parameter) => self.scene.set_integer(parameter, value.whole(name)?),
-            Group::BooleanParameter(parameter) => value
-                .boolean(name)
-                .map(|value| self.scene.set_boolean(parameter, value)),
+            Group::BooleanParameter(parameter) => {
+                value.boolean(name).map(|value| self.scene.set_boolean(parameter, value))
+            }
             Group::StringParameter(parameter) => {
                 let file = value.string(name, "a string")?;
                 self.scene.set_string(parameter, file, &self.folder)

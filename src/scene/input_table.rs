@@ -46,10 +46,7 @@ impl InputTable {
         let head = reader.headers().map_err(syntax)?.clone();
         let columns = at_line(text, &head, columns(&head))?;
         let inputs = columns.iter().flatten();
-        let mut table = Self {
-            times: Vec::new(),
-            columns: inputs.map(|input| (*input, Vec::new())).collect(),
-        };
+        let mut table = Self { times: Vec::new(), columns: inputs.map(|input| (*input, Vec::new())).collect() };
         for record in reader.records() {
             let record = record.map_err(syntax)?;
             at_line(text, &record, table.add(&columns, &record))?;
@@ -92,9 +89,7 @@ impl InputTable {
         match (self.times.first(), self.times.last()) {
             (Some(first), Some(last)) if *first >= stop || *last < 0.0 => {
                 let [first, last, stop] = [*first, *last, stop].map(error::number);
-                Err(SceneError::InputTable(format!(
-                    "time = {first} to {last} s: the run lasts from 0 to {stop} s"
-                )))
+                Err(SceneError::InputTable(format!("time = {first} to {last} s: the run lasts from 0 to {stop} s")))
             }
             _ => Ok(()),
         }
@@ -157,10 +152,7 @@ fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
     let mut seen = Vec::new();
     let columns = head.iter().map(|name| {
         if seen.contains(&name) {
-            return Err(SceneError::GivenTwice {
-                name: name.to_owned(),
-                allowed: "one column",
-            });
+            return Err(SceneError::GivenTwice { name: name.to_owned(), allowed: "one column" });
         }
         seen.push(name);
         if name == "time" {
@@ -173,10 +165,7 @@ fn columns(head: &StringRecord) -> Result<Vec<Column>, SceneError> {
     });
     let columns = columns.collect::<Result<Vec<_>, _>>()?;
     if !columns.contains(&None) {
-        return Err(SceneError::MissingKey {
-            name: "time",
-            allowed: "a column of times in s",
-        });
+        return Err(SceneError::MissingKey { name: "time", allowed: "a column of times in s" });
     }
     Ok(columns)
 }

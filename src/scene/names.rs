@@ -46,11 +46,7 @@ pub(crate) fn variable(role: Role, name: &str) -> Result<&'static Variable, Scen
     };
     let mut names: Vec<_> = variables.map(|variable| variable.name).collect();
     names.sort_by(|a, b| likeness(b).total_cmp(&likeness(a)));
-    Err(SceneError::UnknownName {
-        name: name.to_owned(),
-        what: role.noun(),
-        nearest: list(names.into_iter().take(3)),
-    })
+    Err(SceneError::UnknownName { name: name.to_owned(), what: role.noun(), nearest: list(names.into_iter().take(3)) })
 }
 
 /// Names separated by commas.

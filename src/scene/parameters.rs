@@ -35,10 +35,6 @@ impl Solver {
 
     /// The effective tolerance.
     pub fn effective_tolerance(&self) -> f64 {
-        if self.tolerance > 0.0 {
-            self.tolerance.max(Self::TOLERANCE_FLOOR)
-        } else {
-            Self::DEFAULT_TOLERANCE
-        }
+        if self.tolerance > 0.0 { self.tolerance.max(Self::TOLERANCE_FLOOR) } else { Self::DEFAULT_TOLERANCE }
     }
 }

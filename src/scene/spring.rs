@@ -178,10 +178,7 @@ impl SpringFile {
             Shape::Segments(segments) => segments.check(),
             Shape::Modes(modes) => modes.check(),
         };
-        checked.map_err(|error| SceneError::InFile {
-            file: self.name.clone(),
-            error: Box::new(error),
-        })
+        checked.map_err(|error| SceneError::InFile { file: self.name.clone(), error: Box::new(error) })
     }
 }
 
@@ -220,10 +217,7 @@ impl Segment {
         [
             (field("length", "m", 1e-6, 0.2), Slot::Needed(&mut self.length)),
             (field("width", "m", 1e-5, 1.0), Slot::Ends(&mut self.width, width)),
-            (
-                field("thickness", "m", 1e-6, 5e-3),
-                Slot::Ends(&mut self.thickness, thickness),
-            ),
+            (field("thickness", "m", 1e-6, 5e-3), Slot::Ends(&mut self.thickness, thickness)),
             (modulus, Slot::Optional(&mut self.youngs_modulus)),
             (field("density", "kg/m3", 1.0, 1e5), Slot::Optional(&mut self.density)),
         ]
@@ -276,12 +270,7 @@ impl Modes {
             (PARALLEL_COMPLIANCE, parallel, "parallel", of_parallel),
         ] {
             if held > compliance * (1.0 + PRINTED) {
-                return Err(SceneError::Contradiction {
-                    name: field.name,
-                    compliance,
-                    place,
-                    held,
-                });
+                return Err(SceneError::Contradiction { name: field.name, compliance, place, held });
             }
         }
         Ok(())

@@ -30,10 +30,7 @@ impl SpringFile {
     pub fn read(folder: &Path, name: &str) -> Result<Self, SceneError> {
         let path = folder.join(name);
         let shape = of_file(&path, text(&path), shape)?;
-        Ok(Self {
-            name: name.to_owned(),
-            shape,
-        })
+        Ok(Self { name: name.to_owned(), shape })
     }
 }
 
@@ -80,14 +77,7 @@ fn check_nesting(text: &str) -> Result<(), SceneError> {
 }
 
 fn segments(top: &Entry) -> Result<Segments, SceneError> {
-    top.knows(&[
-        "title",
-        "segment",
-        "mass",
-        "contact_position",
-        "fork_position",
-        "clamp_stiffness",
-    ])?;
+    top.knows(&["title", "segment", "mass", "contact_position", "fork_position", "clamp_stiffness"])?;
     let mut spring = Segments {
         segments: top.entries("segment", 1, |entry| {
             let mut segment = Segment::default();

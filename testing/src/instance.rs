@@ -33,13 +33,7 @@ pub struct Arguments<'a> {
 
 impl Default for Arguments<'_> {
     fn default() -> Self {
-        Self {
-            name: Some("relay 1"),
-            kind: fmi2CoSimulation,
-            guid: Some(GUID),
-            resources: None,
-            logging_on: false,
-        }
+        Self { name: Some("relay 1"), kind: fmi2CoSimulation, guid: Some(GUID), resources: None, logging_on: false }
     }
 }
 
@@ -294,10 +288,7 @@ impl Instance {
         unsafe {
             assert_eq!(fmi2SerializedFMUstateSize(component, state, &raw mut size), fmi2OK);
             let mut bytes = vec![0; size];
-            assert_eq!(
-                fmi2SerializeFMUstate(component, state, bytes.as_mut_ptr(), size),
-                fmi2OK
-            );
+            assert_eq!(fmi2SerializeFMUstate(component, state, bytes.as_mut_ptr(), size), fmi2OK);
             bytes
         }
     }

@@ -145,11 +145,7 @@ pub fn with_modes(number: u64) -> Relay {
     let own = rng.bool();
     let given = modes.iter().take(rng.usize(2..=modes.len())).map(|own_mode| GivenMode {
         damping: own.then(|| (0.5 * own_mode.damping / own_mode.omega_squared.sqrt()).min(1.0)),
-        ..mode(
-            own_mode.omega_squared.sqrt() / TAU,
-            own_mode.tip,
-            own_mode.participation,
-        )
+        ..mode(own_mode.omega_squared.sqrt() / TAU, own_mode.tip, own_mode.participation)
     });
     let shape = of_modes(1.0 / tip_stiffness(scene), given);
     scene.spring = spring_file(&format!("random modes {number}"), shape);
@@ -172,11 +168,8 @@ pub fn closing(number: u64) -> Relay {
     let way = gap + overtravel * logarithmic(rng, 0.1, 1.0);
     let (size, count) = relay.steps;
     let (slowest, fastest) = (f64::from(count / 2) * size, way / 0.5);
-    let parts = [
-        rng.u32(..=count / 4),
-        steps(size, logarithmic(rng, 0.02, 1.0).mul_add(slowest, fastest)).1,
-        count / 2,
-    ];
+    let parts =
+        [rng.u32(..=count / 4), steps(size, logarithmic(rng, 0.02, 1.0).mul_add(slowest, fastest)).1, count / 2];
     for (steps, to) in parts.into_iter().zip([0.0, way, way]) {
         lead(&mut relay, None, (0.0, to), steps);
     }

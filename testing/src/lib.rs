@@ -33,18 +33,12 @@ pub mod springs;
 #[track_caller]
 pub fn near(of: impl Display, found: f64, expected: f64, allowed: f64) {
     let off = (found - expected).abs();
-    assert!(
-        off <= allowed,
-        "{of}: {found} instead of {expected}, off by {off:e} of {allowed:e}"
-    );
+    assert!(off <= allowed, "{of}: {found} instead of {expected}, off by {off:e} of {allowed:e}");
 }
 
 /// The same, relative to the number expected.
 #[track_caller]
 pub fn close(of: impl Display, found: f64, expected: f64, allowed: f64) {
     let off = (found / expected - 1.0).abs();
-    assert!(
-        off <= allowed,
-        "{of}: {found} instead of {expected}, off by {off:e} of {allowed:e}"
-    );
+    assert!(off <= allowed, "{of}: {found} instead of {expected}, off by {off:e} of {allowed:e}");
 }

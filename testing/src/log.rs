@@ -35,12 +35,7 @@ unsafe extern "C" fn logger(
     let text = |text| unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned();
     let log = unsafe { &*environment.cast::<Log>() };
     if let Ok(mut log) = log.lock() {
-        log.push(Message {
-            instance: text(instance),
-            status,
-            category: text(category),
-            text: text(message),
-        });
+        log.push(Message { instance: text(instance), status, category: text(category), text: text(message) });
     }
 }
 

@@ -15,11 +15,7 @@ use crate::springs::{segments, spring_file};
 /// The relay of a number with contacts side by side, at one tip or on tongues.
 pub fn parallel(number: u64) -> Relay {
     let forks = !number.is_multiple_of(4);
-    let mut relay = if forks {
-        Relay::with_segments(number)
-    } else {
-        Relay::draw(number)
-    };
+    let mut relay = if forks { Relay::with_segments(number) } else { Relay::draw(number) };
     let rng = &mut Rng::with_seed(!number);
     let scene = &mut relay.scene;
     keep_axial_force(scene);

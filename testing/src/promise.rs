@@ -156,11 +156,7 @@ pub fn judge_each(first: u64, count: u64, draw: fn(u64) -> Relay, part: f64, tel
 /// Compares references on all cores; in order.
 pub fn compare_all(first: u64, count: u64, draw: fn(u64) -> Relay) -> Vec<Disagreement> {
     let mut all = Vec::new();
-    on_all_cores(
-        first..first + count,
-        |number| compare(number, draw),
-        |one| all.extend(one),
-    );
+    on_all_cores(first..first + count, |number| compare(number, draw), |one| all.extend(one));
     all
 }
 

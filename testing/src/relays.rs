@@ -138,12 +138,7 @@ impl Relay {
         scene.solver.tolerance = logarithmic(rng, 1e-8, 1e-2);
         let duration = (5.0 / frequency).clamp(2e-3, 2e-2);
         let step = logarithmic(rng, 2e-6, 1e-3_f64.min(duration / 5.0));
-        Self {
-            shake,
-            travel,
-            damping,
-            ..Self::of("plain", scene, steps(step, duration))
-        }
+        Self { shake, travel, damping, ..Self::of("plain", scene, steps(step, duration)) }
     }
 
     /// A scene in so many communication steps of a length (s), driven by its generator alone.
@@ -165,25 +160,14 @@ impl Relay {
     }
 
     /// The inputs over a communication step: values at its start, and the rates that lead to those at its end.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a count of steps"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of steps")]
     pub fn inputs(&self, time: f64, size: f64) -> Inputs {
         if let Some(inputs) = self.knots.get((time / size).round() as usize) {
-            return Inputs {
-                pusher_displacement: self.pusher,
-                ..*inputs
-            };
+            return Inputs { pusher_displacement: self.pusher, ..*inputs };
         }
         let at = |(amplitude, frequency): (f64, f64), time: f64| amplitude * (TAU * frequency * time).sin();
         let rate = |wave| {
-            if self.held {
-                0.0
-            } else {
-                (at(wave, time + size) - at(wave, time)) / size
-            }
+            if self.held { 0.0 } else { (at(wave, time + size) - at(wave, time)) / size }
         };
         let mut inputs = Inputs {
             base_acceleration: at(self.shake, time),
@@ -210,11 +194,8 @@ impl Relay {
         let (size, count) = self.steps;
         let mut simulation = Simulation::new(&scene, &self.inputs(0.0, size), 0.0)?;
         let contacts = contacts(&scene);
-        let mut course = Course {
-            contacts: contacts.len(),
-            scale: simulation.model().force_scale,
-            ..Course::default()
-        };
+        let mut course =
+            Course { contacts: contacts.len(), scale: simulation.model().force_scale, ..Course::default() };
         let part = size / f64::from(self.parts);
         for k in 0..count {
             let start = f64::from(k) * size;
@@ -273,11 +254,7 @@ fn spring(rng: &mut Rng, scene: &mut Scene) -> f64 {
     }
     let beam = scene.beam;
     let mass = beam.density * beam.width * beam.thickness * beam.length;
-    scene.tip.mass = if rng.u8(..4) == 0 {
-        0.0
-    } else {
-        mass * logarithmic(rng, 0.03, 3.0)
-    };
+    scene.tip.mass = if rng.u8(..4) == 0 { 0.0 } else { mass * logarithmic(rng, 0.03, 3.0) };
     // First mode of the cantilever, its tip mass included (Rayleigh's quotient with the static shape).
     let stiffness = tip_stiffness(scene);
     let omega = (stiffness / (33.0 / 140.0 * mass + scene.tip.mass)).sqrt();

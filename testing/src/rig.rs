@@ -28,11 +28,7 @@ impl Rig {
 
     fn at(model: Model, state: &State) -> Self {
         let simulation = Simulation::from_state(model.clone(), state);
-        Self {
-            model,
-            state: *state,
-            simulation,
-        }
+        Self { model, state: *state, simulation }
     }
 
     /// The same with a sine base acceleration from time 0: amplitude (m/s2) and frequency (Hz).
@@ -78,10 +74,7 @@ impl Rig {
     /// Instants of the last closing and opening, s.
     pub fn touch(&self) -> (f64, f64) {
         let contact = self.state.contact();
-        contact
-            .last_closing
-            .zip(contact.last_opening)
-            .expect("a touch and a release")
+        contact.last_closing.zip(contact.last_opening).expect("a touch and a release")
     }
 
     /// Energy relative to the preload, J: kinetic and strain energy of the modes about the preload, and the contact's
@@ -96,35 +89,19 @@ impl Rig {
             .sum();
         let contact = |d: f64| match model.law {
             Law::Power(power) => power.elastic_force(d) * d.max(0.0) / (power.exponent + 1.0),
-            Law::Linear(Linear {
-                stiffness,
-                offset,
-                bonded,
-                ..
-            }) => {
+            Law::Linear(Linear { stiffness, offset, bonded, .. }) => {
                 let overlap = if bonded { d - offset } else { (d - offset).max(0.0) };
                 0.5 * stiffness * overlap * overlap
             }
         };
-        let Preload {
-            indentation,
-            force,
-            pusher_force,
-            pusher_overlap,
-            ..
-        } = model.preload;
+        let Preload { indentation, force, pusher_force, pusher_overlap, .. } = model.preload;
         let deviation = state.contact().approach;
         let bent = modes + contact(indentation + deviation) - contact(indentation) - force * deviation;
         if model.scene.effects.pusher == PusherKind::None {
             return bent;
         }
         // Between the spring and the pusher, prescribed ones of which do not move: what the modes do there.
-        let moved: f64 = model
-            .modes
-            .iter()
-            .zip(&state.modes)
-            .map(|(mode, at)| mode.pusher * at.q)
-            .sum();
+        let moved: f64 = model.modes.iter().zip(&state.modes).map(|(mode, at)| mode.pusher * at.q).sum();
         let spring = |d: f64| 0.5 * model.scene.pusher.stiffness * d.max(0.0).powi(2);
         bent + spring(pusher_overlap + moved) - spring(pusher_overlap) - pusher_force * moved + self.magnetic()
     }
@@ -144,10 +121,7 @@ impl Rig {
         let potential = |place: f64| {
             let gap = given.core_position - place;
             let overlaps = [-gap, given.rest_position - place];
-            let stops: f64 = overlaps
-                .iter()
-                .map(|d| 0.5 * given.stop_stiffness * d.max(0.0).powi(2))
-                .sum();
+            let stops: f64 = overlaps.iter().map(|d| 0.5 * given.stop_stiffness * d.max(0.0).powi(2)).sum();
             let reach = given.hold_force * self.state.coil.powi(2) * given.gap_constant;
             let magnet = if gap > 0.0 {
                 -reach / (1.0 + gap / given.gap_constant)
@@ -169,10 +143,7 @@ pub fn compose(modes: &[Mode], law: Law, gap: f64, tolerance: f64, force_scale: 
     // A mass carries no current.
     scene.effects.chatter = false;
     Model::new(&scene, 0.0).expect("the specimen").with(|model| {
-        model.preload = Preload {
-            indentation: -gap,
-            ..Preload::default()
-        };
+        model.preload = Preload { indentation: -gap, ..Preload::default() };
         model.modes = modes.to_vec();
         model.law = law;
         model.force_scale = force_scale;
@@ -192,12 +163,7 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
 
 /// A spring (N/m) that acts only in compression.
 pub fn stop(stiffness: f64) -> Law {
-    Law::Linear(Linear {
-        stiffness,
-        damping: 0.0,
-        offset: 0.0,
-        bonded: false,
-    })
+    Law::Linear(Linear { stiffness, damping: 0.0, offset: 0.0, bonded: false })
 }
 
 /// Hertzian contact `k d^(3/2)` (N/m^1.5) with the damping time (s).
@@ -207,11 +173,5 @@ pub fn hertz(coefficient: f64, damping: f64) -> Law {
 
 /// Contact `c d^p` with the damping time (s); `c` in N/m^p.
 pub fn power(coefficient: f64, exponent: f64, damping: f64) -> Law {
-    Law::Power(Power {
-        coefficient,
-        exponent,
-        damping,
-        traces: 0.0,
-        least: 0.0,
-    })
+    Law::Power(Power { coefficient, exponent, damping, traces: 0.0, least: 0.0 })
 }

@@ -10,12 +10,8 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, RealOutput};
 
 /// Every contact law.
-pub const LAWS: [ContactLawKind; 4] = [
-    ContactLawKind::Hertz,
-    ContactLawKind::Rough,
-    ContactLawKind::Linearised,
-    ContactLawKind::Bonded,
-];
+pub const LAWS: [ContactLawKind; 4] =
+    [ContactLawKind::Hertz, ContactLawKind::Rough, ContactLawKind::Linearised, ContactLawKind::Bonded];
 
 /// The files of `scenes/`, for tests run in the top folder.
 pub fn files() -> Vec<PathBuf> {
@@ -81,20 +77,12 @@ pub fn propped_mass(scene: &Scene) -> f64 {
 
 /// Inputs of a base acceleration (m/s2) and its rate (m/s3) alone.
 pub fn accelerated(base_acceleration: f64, base_acceleration_rate: f64) -> Inputs {
-    Inputs {
-        base_acceleration,
-        base_acceleration_rate,
-        ..Inputs::default()
-    }
+    Inputs { base_acceleration, base_acceleration_rate, ..Inputs::default() }
 }
 
 /// Inputs of a displacement of the fixed contact (m) and its rate (m/s) alone.
 pub fn supported(support_displacement: f64, support_displacement_rate: f64) -> Inputs {
-    Inputs {
-        support_displacement,
-        support_displacement_rate,
-        ..Inputs::default()
-    }
+    Inputs { support_displacement, support_displacement_rate, ..Inputs::default() }
 }
 
 /// Outputs after each of `count` communication steps of `size` seconds without inputs, and the simulation.

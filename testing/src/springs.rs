@@ -21,30 +21,17 @@ pub fn spring_file(name: &str, shape: Shape) -> Option<Arc<SpringFile>> {
 
 /// A spring of these segments.
 pub fn of_segments(segments: impl IntoIterator<Item = Segment>) -> Shape {
-    Shape::Segments(Segments {
-        segments: segments.into_iter().collect(),
-        ..Segments::default()
-    })
+    Shape::Segments(Segments { segments: segments.into_iter().collect(), ..Segments::default() })
 }
 
 /// A spring of these modes, which has this compliance, m/N.
 pub fn of_modes(compliance: f64, modes: impl IntoIterator<Item = GivenMode>) -> Shape {
-    Shape::Modes(Modes {
-        compliance,
-        parallel_compliance: None,
-        modes: modes.into_iter().collect(),
-    })
+    Shape::Modes(Modes { compliance, parallel_compliance: None, modes: modes.into_iter().collect() })
 }
 
 /// A segment of this length, with width and thickness at its start and end (m), of the scene's material.
 pub fn segment(length: f64, width: [f64; 2], thickness: [f64; 2]) -> Segment {
-    Segment {
-        length,
-        width,
-        thickness,
-        youngs_modulus: None,
-        density: None,
-    }
+    Segment { length, width, thickness, youngs_modulus: None, density: None }
 }
 
 /// A uniform spring of this width and thickness over those of the scene's own.
@@ -82,15 +69,7 @@ pub fn by_modes(scene: &Scene) -> Option<Arc<SpringFile>> {
 /// A mode of this frequency (Hz) with what every mode has: displacement of the contact (1/sqrt(kg)), load per base acceleration
 /// (sqrt(kg)).
 pub fn mode(frequency: f64, contact: f64, participation: f64) -> GivenMode {
-    GivenMode {
-        frequency,
-        contact,
-        participation,
-        damping: None,
-        rotation: None,
-        pusher: None,
-        parallel: None,
-    }
+    GivenMode { frequency, contact, participation, damping: None, rotation: None, pusher: None, parallel: None }
 }
 
 impl Relay {
@@ -117,14 +96,7 @@ pub(crate) fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
     let segments = shares.iter().map(|share| {
         let mut ends = |value: f64, least: f64| {
             let start = value * logarithmic(rng, least, 1.0 / least);
-            [
-                start,
-                if rng.bool() {
-                    start
-                } else {
-                    start * logarithmic(rng, 0.3, 1.0)
-                },
-            ]
+            [start, if rng.bool() { start } else { start * logarithmic(rng, 0.3, 1.0) }]
         };
         let (width, thickness) = (ends(beam.width, 0.4), ends(beam.thickness, 0.7));
         segment(beam.length * share / whole, width, thickness)
@@ -134,11 +106,7 @@ pub(crate) fn segments(rng: &mut Rng, scene: &Scene) -> Segments {
     let masses = (0..rng.usize(..3)).map(|_| PointMass {
         position: beam.length * uniform(rng, 0.1, 1.0),
         mass: mass * logarithmic(rng, 0.01, 1.0),
-        rotary_inertia: if rng.bool() {
-            0.0
-        } else {
-            mass * beam.length.powi(2) * logarithmic(rng, 1e-5, 1e-2)
-        },
+        rotary_inertia: if rng.bool() { 0.0 } else { mass * beam.length.powi(2) * logarithmic(rng, 1e-5, 1e-2) },
     });
     let masses = masses.collect();
     // E I / L, from nearly rigid to nearly hinged.

@@ -116,12 +116,7 @@ fn what_is_read_inside_exact_steps_is_within_the_tolerance() {
                         .map(|output| (inside.real(output), single.real(output), restored.real(output)));
                     for ((found, exact, restored), allowed) in read.into_iter().zip([allowed, allowed / stiffness]) {
                         assert_eq!(found, restored);
-                        near(
-                            format_args!("{law:?}, {tolerance:e}, {size} s, step {k}"),
-                            found,
-                            exact,
-                            allowed,
-                        );
+                        near(format_args!("{law:?}, {tolerance:e}, {size} s, step {k}"), found, exact, allowed);
                     }
                     if k % 37 == 0 {
                         restored = Simulation::resume(
@@ -244,13 +239,9 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
 #[test]
 fn every_damping_and_load_against_the_matrix_exponential() {
     for damping in DAMPINGS {
-        for (modes, factor, mass) in [
-            (1, 1.0, 22.6e-6),
-            (4, 1.0, 22.6e-6),
-            (4, 1.0, 0.0),
-            (3, 100.0, 22.6e-6),
-            (3, 0.01, 0.0),
-        ] {
+        for (modes, factor, mass) in
+            [(1, 1.0, 22.6e-6), (4, 1.0, 22.6e-6), (4, 1.0, 0.0), (3, 100.0, 22.6e-6), (3, 0.01, 0.0)]
+        {
             let mut scene = damped(ContactLawKind::Bonded, modes, damping);
             scene.tip.mass = mass;
             stiffen(&mut scene, factor);
@@ -269,17 +260,11 @@ fn exact_steps_hold_through_critical_damping() {
     let mode = model.modes[0];
     let contact = model.preload.contact_stiffness * mode.tip * mode.tip;
     let critical = 2.0 * (mode.omega_squared + contact).sqrt();
-    for off in [
-        0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-5, -1e-5, 1e-4, 1e-3, 1e-2, -1e-2,
-    ] {
+    for off in [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-8, -1e-8, 1e-5, -1e-5, 1e-4, 1e-3, 1e-2, -1e-2] {
         let both = critical * (1.0 + off) / (mode.omega_squared + contact);
         let beam = 1e-6;
         let unequal = (critical * (1.0 + off) - beam * mode.omega_squared) / contact;
-        for damping in [
-            (0.0, both, both),
-            (0.0, beam, unequal),
-            (0.0, 0.0, critical * (1.0 + off) / contact),
-        ] {
+        for damping in [(0.0, both, both), (0.0, beam, unequal), (0.0, 0.0, critical * (1.0 + off) / contact)] {
             let worst = error_against_the_exponential(&damped(ContactLawKind::Bonded, 1, damping));
             assert!(worst < 1e-12, "{off:e} {damping:?}: {worst:e}");
         }
@@ -305,17 +290,12 @@ fn one_long_step_is_many_short_ones() {
                 let inputs = accelerated(20.0 * f64::from(count), 0.0);
                 one.run_to(&inputs, f64::from(count + 1) * size).unwrap();
                 for part in 1..=parts {
-                    many.run_to(&inputs, (f64::from(count) + f64::from(part) / f64::from(parts)) * size)
-                        .unwrap();
+                    many.run_to(&inputs, (f64::from(count) + f64::from(part) / f64::from(parts)) * size).unwrap();
                 }
                 worst =
                     worst.max((one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale);
             }
-            assert_eq!(
-                (one.state.steps, many.state.steps),
-                (5, 500),
-                "{damping:?}, {modes} modes"
-            );
+            assert_eq!((one.state.steps, many.state.steps), (5, 500), "{damping:?}, {modes} modes");
             assert!(worst < 1e-12, "{damping:?}, {modes} modes: {worst:e}");
         }
     }
@@ -336,11 +316,7 @@ fn linearised_out_of_reach_of_the_cut_is_bonded() {
             assert!(rig.state.steps <= 30, "{law:?}, {damping:?}");
             (rig.state.steps, rig.state.contact().force)
         };
-        assert_eq!(
-            run(ContactLawKind::Bonded),
-            run(ContactLawKind::Linearised),
-            "{damping:?}"
-        );
+        assert_eq!(run(ContactLawKind::Bonded), run(ContactLawKind::Linearised), "{damping:?}");
     }
 }
 
@@ -360,10 +336,7 @@ fn linearised_that_opens_is_left_to_the_collocation() {
         assert!(difference <= allowed, "step {k}: {difference:e}");
         assert!(mixed.state.contact().force >= 0.0);
     }
-    assert!(
-        mixed.state.contact().last_opening > Some(0.0),
-        "the contact never opened"
-    );
+    assert!(mixed.state.contact().last_opening > Some(0.0), "the contact never opened");
 }
 
 /// A generator that starts inside a communication step: one exact step from there on, as the contact rests before.

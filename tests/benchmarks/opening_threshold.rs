@@ -23,8 +23,7 @@ fn model(law: ContactLawKind, tolerance: f64, frequency: f64) -> Model {
 /// 1e-13 in 40 ms.
 fn periodic(model: Model, amplitude: f64, frequency: f64) -> Rig {
     let mut rig = Rig::shaken(model, amplitude, frequency);
-    rig.run_to(&Inputs::default(), (0.04 * frequency).ceil() / frequency)
-        .unwrap();
+    rig.run_to(&Inputs::default(), (0.04 * frequency).ceil() / frequency).unwrap();
     rig
 }
 
@@ -33,8 +32,7 @@ fn least_force(rig: &mut Rig, frequency: f64) -> f64 {
     let start = rig.state.time;
     let forces: Vec<f64> = (1..=400)
         .map(|k| {
-            rig.run_to(&Inputs::default(), start + f64::from(k) / (400.0 * frequency))
-                .unwrap();
+            rig.run_to(&Inputs::default(), start + f64::from(k) / (400.0 * frequency)).unwrap();
             rig.state.contact().force
         })
         .collect();
@@ -64,11 +62,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
             }
             rig.state.links[0].last_opening = None;
             rig.run_to(&Inputs::default(), at + 3.0 / frequency).unwrap();
-            assert_eq!(
-                rig.state.contact().last_opening > Some(0.0),
-                opens,
-                "{frequency} Hz, {factor}"
-            );
+            assert_eq!(rig.state.contact().last_opening > Some(0.0), opens, "{frequency} Hz, {factor}");
         }
     }
 }

@@ -11,12 +11,9 @@ use testing::rig::{Rig, compose, hertz, oscillator};
 
 #[test]
 fn restitution_at_release_without_tension() {
-    for (damping, published) in [
-        (0.001, 0.998_271_644_2),
-        (0.01, 0.982_883_290_4),
-        (0.1, 0.845_143_806_3),
-        (0.3, 0.623_642_991_4),
-    ] {
+    for (damping, published) in
+        [(0.001, 0.998_271_644_2), (0.01, 0.982_883_290_4), (0.1, 0.845_143_806_3), (0.3, 0.623_642_991_4)]
+    {
         for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
             let model = compose(&[oscillator(1.0, 0.0)], hertz(1.0, damping), 0.5, tolerance, 1.0);
             let mut rig = Rig::new(model);

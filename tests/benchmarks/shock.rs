@@ -37,8 +37,7 @@ fn duration_force_and_impulse_of_the_shock() {
         let mut impulse = 0.0;
         let parts = 400_u32;
         for k in 1..parts {
-            rig.run_to(&rest, touch + duration * f64::from(k) / f64::from(parts))
-                .unwrap();
+            rig.run_to(&rest, touch + duration * f64::from(k) / f64::from(parts)).unwrap();
             let weight = if k % 2 == 1 { 4.0 } else { 2.0 } / 3.0;
             impulse += weight * duration / f64::from(parts) * rig.state.contact().force;
             if 2 * k == parts {

@@ -17,11 +17,7 @@ use relay_contact::variables::VARIABLES;
 fn compiled(source: &str) -> Command {
     let test = std::env::current_exe().unwrap();
     let libraries = test.parent().unwrap();
-    assert!(
-        libraries
-            .join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"))
-            .exists()
-    );
+    assert!(libraries.join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}")).exists());
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(source);
     let name = source.file_stem().unwrap().to_str().unwrap();
     let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}{EXE_SUFFIX}"));
@@ -37,11 +33,7 @@ fn compiled(source: &str) -> Command {
         .arg(&program)
         .output()
         .expect("a C compiler that is called cc (Debian: apt install gcc)");
-    assert!(
-        compiler.status.success(),
-        "{}",
-        String::from_utf8_lossy(&compiler.stderr)
-    );
+    assert!(compiler.status.success(), "{}", String::from_utf8_lossy(&compiler.stderr));
     let mut command = Command::new(program);
     // Cargo points this at a folder that may hold the library of an earlier build.
     command.env("LD_LIBRARY_PATH", libraries);
@@ -50,9 +42,7 @@ fn compiled(source: &str) -> Command {
 
 fn in_rust() -> Command {
     let mut command = Command::new(env!("CARGO"));
-    command
-        .args(["run", "--quiet", "--example=embed", "--"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"));
+    command.args(["run", "--quiet", "--example=embed", "--"]).current_dir(env!("CARGO_MANIFEST_DIR"));
     command
 }
 
@@ -61,9 +51,7 @@ fn run(mut program: Command, acceleration: &str, duration: &str, table: &str) ->
     let path: PathBuf = Path::new(env!("CARGO_TARGET_TMPDIR")).join(table);
     let ran = program.args([acceleration, duration]).arg(&path).output().unwrap();
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
-    let said = String::from_utf8(ran.stdout)
-        .unwrap()
-        .replace(path.to_str().unwrap(), "");
+    let said = String::from_utf8(ran.stdout).unwrap().replace(path.to_str().unwrap(), "");
     let text = fs::read_to_string(&path).unwrap();
     let row = |line: &str| line.split(',').map(|value| value.parse().unwrap()).collect();
     (said, text.lines().skip(1).map(row).collect())
@@ -80,11 +68,7 @@ fn both_languages_give_the_same_numbers() {
     let threshold = Scene::default().chatter.resistance_threshold;
     let above: Vec<_> = rust.1.iter().map(|row| row[3] > threshold).collect();
     let long = above.split(|above| !above).filter(|stretch| stretch.len() > 3).count();
-    assert!(
-        rust.0.starts_with(&format!("interruptions of 5 us or more: {long}\n")) && long >= 2,
-        "{}",
-        rust.0
-    );
+    assert!(rust.0.starts_with(&format!("interruptions of 5 us or more: {long}\n")) && long >= 2, "{}", rust.0);
     assert!(!rust.0.contains("steps done again: 0"), "{}", rust.0);
 }
 
@@ -108,10 +92,7 @@ fn a_small_vibration_gives_the_linear_response() {
     // contact departs from its tangent by about the amplitude over the preload, here 0.2 %. An acceleration held over
     // the steps would come half a step late, 0.6 % of the amplitude.
     assert!(scale < 2e-3 * model.preload.force);
-    let worst = rows[5000..]
-        .iter()
-        .map(|row| (row[2] - force(row[0])).abs())
-        .fold(0.0, f64::max);
+    let worst = rows[5000..].iter().map(|row| (row[2] - force(row[0])).abs()).fold(0.0, f64::max);
     assert!(worst < 2e-3 * scale, "{worst} N of {scale} N");
 }
 
@@ -130,10 +111,7 @@ fn the_header_names_every_variable() {
     let lines: Vec<_> = relay_contact::C_HEADER.lines().collect();
     for variable in &VARIABLES {
         let described = |line: &&str| line.contains(&format!("* `{}`, ", variable.name));
-        let at = lines
-            .iter()
-            .position(described)
-            .unwrap_or_else(|| panic!("{}", variable.name));
+        let at = lines.iter().position(described).unwrap_or_else(|| panic!("{}", variable.name));
         let constant: String = variable.name.chars().filter(|c| *c != '.').collect();
         let defined: Vec<_> = lines[at + 2].split(' ').collect();
         let name = defined[1].strip_prefix("RELAY_CONTACT_").unwrap().replace('_', "");

@@ -106,11 +106,7 @@ fn closed_form(scene: &Scene, time: f64) -> f64 {
     }
     match scene.effects.excitation {
         ExcitationKind::Sine => {
-            let reached = if tau < e.rise_time {
-                0.5 - 0.5 * (PI * tau / e.rise_time).cos()
-            } else {
-                1.0
-            };
+            let reached = if tau < e.rise_time { 0.5 - 0.5 * (PI * tau / e.rise_time).cos() } else { 1.0 };
             reached * within(e.frequency) * (TAU * e.frequency * tau + e.phase).sin()
         }
         ExcitationKind::HalfSine if tau <= e.duration => e.amplitude * (PI * tau / e.duration).sin(),
@@ -135,19 +131,10 @@ fn every_waveform() -> Vec<(&'static str, Scene)> {
         ("half sine", half_sine(start, 300.0, 2e-3)),
         ("sweep up", phased(sweep(start, 300.0, 3000.0, 2e-3), -0.4)),
         ("sweep down", phased(sweep(start, 3000.0, 300.0, 2e-3), 0.4)),
-        (
-            "sweep over the crossover",
-            limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6),
-        ),
+        ("sweep over the crossover", limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6)),
         ("random", random(start, 100.0, 2500.0, 4.0)),
         ("pulling half sine", half_sine(start, -300.0, 2e-3)),
-        (
-            "pulling limited sine",
-            pulling(limited(excited(ExcitationKind::Sine, start), 1e-6)),
-        ),
-        (
-            "pulling sweep over the crossover",
-            pulling(limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6)),
-        ),
+        ("pulling limited sine", pulling(limited(excited(ExcitationKind::Sine, start), 1e-6))),
+        ("pulling sweep over the crossover", pulling(limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6))),
     ]
 }

@@ -96,20 +96,12 @@ fn a_linear_scene_goes_through_a_shock_in_exact_steps() {
     assert_eq!(steps, 2);
     let (parts, _) = forces(&scene, &equal_steps(7e-6, 142), undriven);
     let (last, _) = forces(&scene, &[142.0 * 7e-6], undriven);
-    assert!(
-        (parts[141] - last[0]).abs() < 1e-12 * force_scale(&scene),
-        "{} {}",
-        parts[141],
-        last[0]
-    );
+    assert!((parts[141] - last[0]).abs() < 1e-12 * force_scale(&scene), "{} {}", parts[141], last[0]);
     let mut stepped = scene.clone();
     stepped.solver.maximum_step = 1e-5;
     let (integrated, many) = forces(&stepped, &[1e-3], undriven);
     assert!(many > 50, "{many}");
-    assert!(
-        (integrated[0] - whole[0]).abs() < 1e-10 * force_scale(&scene),
-        "{integrated:?} {whole:?}"
-    );
+    assert!((integrated[0] - whole[0]).abs() < 1e-10 * force_scale(&scene), "{integrated:?} {whole:?}");
 }
 
 #[test]

@@ -27,12 +27,9 @@ fn waveforms_are_those_of_their_closed_forms() {
 fn a_sweep_between_like_frequencies_is_the_sine() {
     let sine = Generator::new(&phased(excited(ExcitationKind::Sine, 0.0), 0.3));
     // Turns that the sweep is ahead: f tau (r - 1) tau / 2 D.
-    for (end_frequency, part) in [
-        (1000.0, 0.0),
-        (1000.0 + 2e-12, 2e-15),
-        (1000.0 + 1e-9, 1e-12),
-        (1000.0 - 1e-9, -1e-12),
-    ] {
+    for (end_frequency, part) in
+        [(1000.0, 0.0), (1000.0 + 2e-12, 2e-15), (1000.0 + 1e-9, 1e-12), (1000.0 - 1e-9, -1e-12)]
+    {
         let near = Generator::new(&phased(sweep(0.0, 1000.0, end_frequency, 1e9), 0.3));
         for tau in [0.0, 1e-4, 0.77, 1234.567, 1e6, 3.3e8 + 0.125] {
             let ahead = TAU * 1000.0 * tau * part * tau / 2e9;
@@ -72,13 +69,8 @@ fn a_shock_changes_the_velocity_as_the_standard_says() {
     // MIL-STD-202 method 213 condition A: 50 g, 11 ms, half sine.
     let generator = Generator::new(&half_sine(0.02, 50.0 * G, 0.011));
     let size = 1e-6;
-    let change: f64 = (0..50_000)
-        .map(|k| size * generator.acceleration(size * (f64::from(k) + 0.5)))
-        .sum();
+    let change: f64 = (0..50_000).map(|k| size * generator.acceleration(size * (f64::from(k) + 0.5))).sum();
     assert!((change - 3.434).abs() < 5e-4, "{change}");
-    assert_eq!(
-        (generator.next_break(0.0), generator.next_break(0.02)),
-        (Some(0.02), Some(0.031))
-    );
+    assert_eq!((generator.next_break(0.0), generator.next_break(0.02)), (Some(0.02), Some(0.031)));
     assert_eq!(generator.next_break(0.031), None);
 }

@@ -7,28 +7,14 @@ use testing::instance::{Instance, vr};
 
 const INPUTS: [&str; 2] = ["base.acceleration", "contact.current"];
 /// Outputs of each type, and an input and a choice.
-const READ: [&str; 6] = [
-    "contact.force",
-    "step.minimumForce",
-    "chatter.count",
-    "contact.closed",
-    "contact.current",
-    "effects.resistance",
-];
+const READ: [&str; 6] =
+    ["contact.force", "step.minimumForce", "chatter.count", "contact.closed", "contact.current", "effects.resistance"];
 
 /// Times with a jump at 30 us, and the inputs there: the contact opens.
 fn course() -> (Vec<f64>, Vec<[f64; 2]>) {
     let times = [0.0, 1e-5, 3e-5, 3e-5, 1e-4, 4e-4, 4.1e-4, 2e-3];
-    let inputs = [
-        [0.0, 0.0],
-        [5.0, 0.01],
-        [10.0, 0.02],
-        [-900.0, 0.02],
-        [-900.0, 0.1],
-        [-600.0, 0.1],
-        [300.0, 0.0],
-        [0.0, 0.0],
-    ];
+    let inputs =
+        [[0.0, 0.0], [5.0, 0.01], [10.0, 0.02], [-900.0, 0.02], [-900.0, 0.1], [-600.0, 0.1], [300.0, 0.0], [0.0, 0.0]];
     (times.to_vec(), inputs.to_vec())
 }
 
@@ -101,10 +87,7 @@ fn the_rows_are_those_of_calls_one_after_another() {
     assert!(counted, "the contact did not open: {expected:?}");
     // It goes on from there, with the inputs held.
     assert_eq!((fmu.step(2e-3, 1e-5), other.step(2e-3, 1e-5)), (fmi2OK, fmi2OK));
-    assert_eq!(
-        fmu.real("contact.force").to_bits(),
-        other.real("contact.force").to_bits()
-    );
+    assert_eq!(fmu.real("contact.force").to_bits(), other.real("contact.force").to_bits());
 }
 
 #[test]
@@ -115,14 +98,7 @@ fn a_failure_leaves_what_was_done_before() {
     let (fmu, other) = (started(), started());
     let (status, rows) = follow(&fmu, &times, &inputs);
     assert_eq!(status, fmi2Error);
-    fmu.expect_message(
-        fmi2Error,
-        &[
-            "fmi2DoStep",
-            "contact.current = 1000000000 A: not allowed",
-            "in this step",
-        ],
-    );
+    fmu.expect_message(fmi2Error, &["fmi2DoStep", "contact.current = 1000000000 A: not allowed", "in this step"]);
     assert_eq!(bits(&rows[..2]), bits(&one_by_one(&other, &times[..3], &inputs[..3])));
     assert!(rows[2..].iter().flatten().all(|value| value.is_nan()));
     assert_eq!(fmu.last_successful_time(), other.last_successful_time());
@@ -176,9 +152,6 @@ fn wrong_calls_are_refused() {
     ] {
         let fmu = started();
         assert!(call(fmu.component, n, input, n_inputs, courses, output, rows) > fmi2OK);
-        assert_eq!(
-            call(ptr::null_mut(), n, input, n_inputs, courses, output, rows),
-            fmi2Error
-        );
+        assert_eq!(call(ptr::null_mut(), n, input, n_inputs, courses, output, rows), fmi2Error);
     }
 }

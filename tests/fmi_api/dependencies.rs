@@ -32,10 +32,7 @@ const SHARED: [(&str, &str); 11] = [
     ("PRESSED", "effects.pusher=2"),
     ("MOVED", "effects.pusher=3"),
     // Between its stops.
-    (
-        "FLOATING",
-        "armature.corePosition=1e-3 armature.gapConstant=1e-3 armature.returnForce=0",
-    ),
+    ("FLOATING", "armature.corePosition=1e-3 armature.gapConstant=1e-3 armature.returnForce=0"),
 ];
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold that
@@ -192,11 +189,7 @@ impl Known {
     fn others(&self, variable: &Variable) -> Vec<f64> {
         let near = |value: f64| {
             let Variable { min, max, .. } = *variable;
-            let step = if value == 0.0 {
-                1e-3 * max.min(1.0)
-            } else {
-                1e-3 * value
-            };
+            let step = if value == 0.0 { 1e-3 * max.min(1.0) } else { 1e-3 * value };
             // Some ends of a range do not fit.
             let inside = 1e-3 * (max - min);
             vec![value + step, value - step, min, max, min + inside, max - inside]
@@ -208,10 +201,9 @@ impl Known {
                 let value = f64::from(self.scene.integer(parameter));
                 vec![value + 1.0, value + 10.0]
             }
-            Group::EnumerationParameter(parameter) => choices(parameter)
-                .iter()
-                .map(|(_, number)| f64::from(*number))
-                .collect(),
+            Group::EnumerationParameter(parameter) => {
+                choices(parameter).iter().map(|(_, number)| f64::from(*number)).collect()
+            }
             Group::BooleanParameter(parameter) => vec![f64::from(u8::from(!self.scene.boolean(parameter)))],
             Group::StringParameter(_) => vec![1.0],
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => vec![],
@@ -231,18 +223,12 @@ type Pairs = BTreeSet<(&'static str, &'static str)>;
 
 fn declared() -> Pairs {
     let document = Document::parse(MODEL_DESCRIPTION).unwrap();
-    let unknowns = document
-        .descendants()
-        .find(|node| node.has_tag_name("InitialUnknowns"))
-        .unwrap();
+    let unknowns = document.descendants().find(|node| node.has_tag_name("InitialUnknowns")).unwrap();
     let name = |index: &str| VARIABLES[index.parse::<usize>().unwrap() - 1].name;
-    let pairs = unknowns
-        .children()
-        .filter(roxmltree::Node::is_element)
-        .flat_map(|unknown| {
-            let knowns = unknown.attribute("dependencies").unwrap().split_whitespace();
-            knowns.map(move |known| (name(unknown.attribute("index").unwrap()), name(known)))
-        });
+    let pairs = unknowns.children().filter(roxmltree::Node::is_element).flat_map(|unknown| {
+        let knowns = unknown.attribute("dependencies").unwrap().split_whitespace();
+        knowns.map(move |known| (name(unknown.attribute("index").unwrap()), name(known)))
+    });
     pairs.collect()
 }
 

@@ -56,17 +56,9 @@ fn outputs(file: &SceneFile, environment: u64) -> Vec<u64> {
     for (k, &(time, size)) in steps.iter().enumerate() {
         let inputs = file.inputs_over(time, size).unwrap();
         within(environment, || fmu.set_inputs(&inputs));
-        assert_eq!(
-            within(environment, || fmu.step(time, size)),
-            fmi2OK,
-            "{:?}",
-            fmu.messages()
-        );
+        assert_eq!(within(environment, || fmu.step(time, size)), fmi2OK, "{:?}", fmu.messages());
         if k % 10 == 0 {
-            for variable in VARIABLES
-                .iter()
-                .filter(|variable| matches!(variable.group, Group::RealOutput(_)))
-            {
+            for variable in VARIABLES.iter().filter(|variable| matches!(variable.group, Group::RealOutput(_))) {
                 bits.push(within(environment, || fmu.real(variable.name)).to_bits());
             }
         }

@@ -57,9 +57,7 @@ fn of_kind((_, _, draw): Kind, number: u64) -> Option<(Instance, f64)> {
 
 #[test]
 fn every_state_goes_through_bytes() {
-    let relays = KINDS
-        .into_iter()
-        .flat_map(|kind| (0..4).filter_map(move |number| of_kind(kind, number)));
+    let relays = KINDS.into_iter().flat_map(|kind| (0..4).filter_map(move |number| of_kind(kind, number)));
     for (number, (fmu, size)) in relays.chain([(shaken(450.0), 1e-5)]).enumerate() {
         let other = Instance::new();
         for k in 0..500 {
@@ -125,10 +123,7 @@ fn dropped(fmu: &Instance) -> (Vec<[u64; 12]>, Vec<String>) {
     fmu.shake(600.0);
     assert_eq!(fmu.set_integer("effects.pusher", PusherKind::Armature as i32), fmi2OK);
     assert_eq!(fmu.set_boolean("effects.contactDamping", false), fmi2OK);
-    assert_eq!(
-        fmu.set_reals(["contact.overtravel", "beam.stiffnessDamping"], [-5e-5, 3e-7]),
-        fmi2OK
-    );
+    assert_eq!(fmu.set_reals(["contact.overtravel", "beam.stiffnessDamping"], [-5e-5, 3e-7]), fmi2OK);
     assert_eq!(fmu.set_integer("solver.modes", 8), fmi2OK);
     fmu.initialize();
     assert_eq!(fmu.set_rates(["base.acceleration"], [2], [1.0]), fmi2OK);

@@ -30,11 +30,7 @@ fn forces(clock: Clock, differences: bool, steps: u32, stop: Option<f64>, amplit
     for n in 0..steps {
         let time = clock(f64::from(n), sum);
         sum += STEP;
-        let length = if differences {
-            clock(f64::from(n + 1), sum) - time
-        } else {
-            STEP
-        };
+        let length = if differences { clock(f64::from(n + 1), sum) - time } else { STEP };
         if amplitude != 0.0 {
             // Any numbers that do not repeat.
             let acceleration = amplitude * (0.06 * f64::from(n)).sin();
@@ -95,11 +91,7 @@ fn the_location_of_the_resources_is_free() {
     ];
     for place in places {
         let place = place.map(|place| CString::new(place).unwrap());
-        let fmu = Instance::with(&Arguments {
-            resources: place.as_deref(),
-            logging_on: true,
-            ..Arguments::default()
-        });
+        let fmu = Instance::with(&Arguments { resources: place.as_deref(), logging_on: true, ..Arguments::default() });
         fmu.initialize();
         assert_eq!(fmu.step(0.0, STEP), fmi2OK);
         assert!(fmu.messages().is_empty());

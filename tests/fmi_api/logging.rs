@@ -30,11 +30,7 @@ fn an_unknown_category_is_a_warning_that_changes_nothing() {
     // As a printf format this reads "log%s##r103##All", and there "##" stands for "#", "#r103#" for a variable.
     fmu.expect_message(
         fmi2Warning,
-        &[
-            "fmi2SetDebugLogging",
-            "log%%s##r103##All",
-            "logStatusError, logStatusWarning, logEvents and logSolver",
-        ],
+        &["fmi2SetDebugLogging", "log%%s##r103##All", "logStatusError, logStatusWarning, logEvents and logSolver"],
     );
 }
 
@@ -43,10 +39,7 @@ type Choice<'a> = (fmi2Boolean, &'a [&'a CStr]);
 
 /// Messages of events and of the solver in a run in which the contact opens at 0.7088 ms, as `choices` have it.
 fn debug_messages(logging_on: bool, choices: &[Choice]) -> [Vec<String>; 2] {
-    let fmu = Instance::with(&Arguments {
-        logging_on,
-        ..Arguments::default()
-    });
+    let fmu = Instance::with(&Arguments { logging_on, ..Arguments::default() });
     for (on, categories) in choices {
         assert_eq!(choose(&fmu, *on, categories), fmi2OK);
     }
@@ -71,10 +64,7 @@ fn openings_and_closings_are_logged_with_their_instants() {
     let expected = [("opens", 708.827_593e-6), ("closes", 1_089.427_605e-6)];
     assert_eq!(events.len(), expected.len(), "{events:?}");
     for (text, (verb, instant)) in events.iter().zip(expected) {
-        assert!(
-            text.starts_with(&format!("fmi2DoStep: the contact {verb} at ")),
-            "{text}"
-        );
+        assert!(text.starts_with(&format!("fmi2DoStep: the contact {verb} at ")), "{text}");
         let told: f64 = text.split(' ').rev().nth(1).unwrap().parse().unwrap();
         assert!((told - instant).abs() < 1e-9, "{text}");
     }
@@ -115,10 +105,7 @@ fn warnings(damping: f64, modes: i32) -> Vec<String> {
     // Thirty times the tolerance.
     let announced = fmu.real("solver.forceError") > 3e-5;
     let messages = fmu.messages();
-    assert!(
-        messages.iter().all(|message| message.status == fmi2Warning),
-        "{messages:?}"
-    );
+    assert!(messages.iter().all(|message| message.status == fmi2Warning), "{messages:?}");
     let told: Vec<_> = messages.into_iter().map(|message| message.text).collect();
     assert_eq!(announced, !told.is_empty(), "{told:?}");
     told
@@ -157,10 +144,7 @@ fn a_logger_that_calls_back_is_refused_and_harms_nothing() {
     let mut component: fmi2Component = ptr::null_mut();
     let place = &raw mut component;
     let callbacks = calling(Some(meddle), None, place.cast());
-    let logging = Arguments {
-        logging_on: true,
-        ..Arguments::default()
-    };
+    let logging = Arguments { logging_on: true, ..Arguments::default() };
     let made = logging.instantiate(fmi2Instantiate, Some(&callbacks));
     unsafe {
         place.write(made);
@@ -176,10 +160,7 @@ unsafe extern "C" fn finished(environment: fmi2ComponentEnvironment, status: fmi
     let (component, times) = unsafe { &mut *environment.cast::<(fmi2Component, Vec<f64>)>() };
     let mut time = f64::NAN;
     assert_eq!(status, fmi2OK);
-    assert_eq!(
-        unsafe { fmi2GetRealStatus(*component, fmi2LastSuccessfulTime, &raw mut time) },
-        fmi2OK
-    );
+    assert_eq!(unsafe { fmi2GetRealStatus(*component, fmi2LastSuccessfulTime, &raw mut time) }, fmi2OK);
     times.push(time);
 }
 

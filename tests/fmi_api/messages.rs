@@ -37,10 +37,7 @@ fn an_array_that_is_null_misaligned_or_endless_is_named() {
     check!(fmi2SetRealInputDerivatives(reference, 1, order, ptr::null()), "value");
     check!(fmi2GetRealOutputDerivatives(null, 1, order, value), "vr");
     check!(fmi2GetRealOutputDerivatives(reference, 1, ptr::null(), value), "order");
-    check!(
-        fmi2GetRealOutputDerivatives(reference, 1, order, ptr::null_mut()),
-        "value"
-    );
+    check!(fmi2GetRealOutputDerivatives(reference, 1, order, ptr::null_mut()), "value");
     check!(fmi2GetFMUstate(ptr::null_mut()), "FMUstate");
 }
 
@@ -50,11 +47,7 @@ fn a_value_out_of_range_is_named_with_its_unit_and_the_range() {
     let reals: [(&str, f64, &[&str]); 3] = [
         ("beam.width", 1e300, &["beam.width = 1e300 m", "0.0001 to 1"]),
         ("beam.width", -5e-324, &["beam.width = -5e-324 m"]),
-        (
-            "base.acceleration",
-            f64::NEG_INFINITY,
-            &["base.acceleration = -inf m/s2"],
-        ),
+        ("base.acceleration", f64::NEG_INFINITY, &["base.acceleration = -inf m/s2"]),
     ];
     for (name, value, parts) in reals {
         let fmu = Instance::new();
@@ -124,12 +117,9 @@ fn a_number_of_the_experiment_or_of_a_step_is_named() {
         fmu.initialize();
         fmu.answers(fmu.step(1.0, size), fmi2Error, &["fmi2DoStep", "communicationStepSize"]);
     }
-    for (time, part) in [
-        (f64::NAN, ""),
-        (f64::INFINITY, ""),
-        (f64::NEG_INFINITY, ""),
-        (0.5, "the time of the instance is"),
-    ] {
+    for (time, part) in
+        [(f64::NAN, ""), (f64::INFINITY, ""), (f64::NEG_INFINITY, ""), (0.5, "the time of the instance is")]
+    {
         let fmu = Instance::initialized();
         let parts = ["fmi2DoStep", "currentCommunicationPoint", part];
         fmu.answers(fmu.step(time, 1e-5), fmi2Error, &parts);
@@ -153,11 +143,7 @@ fn an_unsupported_status_derivative_or_foreign_state_is_named() {
     let (none, mut nothing) = (ptr::null(), 0.0);
     let status =
         unsafe { fmi2GetDirectionalDerivative(fmu.component, none, 0, none, 0, ptr::null(), &raw mut nothing) };
-    let parts = [
-        "fmi2GetDirectionalDerivative",
-        "not supported",
-        "providesDirectionalDerivative",
-    ];
+    let parts = ["fmi2GetDirectionalDerivative", "not supported", "providesDirectionalDerivative"];
     fmu.answers(status, fmi2Error, &parts);
     let mut memory = [0_u64; 8];
     let mut foreign: fmi2FMUstate = memory.as_mut_ptr().cast();
@@ -168,11 +154,7 @@ fn an_unsupported_status_derivative_or_foreign_state_is_named() {
     }
     let place = &raw mut foreign;
     let fmu = Instance::initialized();
-    fmu.answers(
-        unsafe { fmi2GetFMUstate(fmu.component, place) },
-        fmi2Error,
-        &["fmi2GetFMUstate", "not a saved state"],
-    );
+    fmu.answers(unsafe { fmi2GetFMUstate(fmu.component, place) }, fmi2Error, &["fmi2GetFMUstate", "not a saved state"]);
     assert_eq!(fmu.reset(), fmi2OK);
     fmu.answers(
         unsafe { fmi2FreeFMUstate(fmu.component, place) },

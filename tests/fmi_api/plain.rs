@@ -7,10 +7,7 @@ use roxmltree::{Document, Node};
 use testing::instance::{Arguments, Instance};
 
 fn plain() -> Instance {
-    Instance::with(&Arguments {
-        guid: Some(PLAIN_GUID),
-        ..Arguments::default()
-    })
+    Instance::with(&Arguments { guid: Some(PLAIN_GUID), ..Arguments::default() })
 }
 
 /// Variables of a description, each with its value.
@@ -37,10 +34,7 @@ fn its_description_has_reals_and_strings_alone_and_says_what_numbers_stand_for()
         let kind = if typed.has_tag_name("String") { "String" } else { "Real" };
         assert_eq!(value.tag_name().name(), kind, "{after:?}");
         let number = |text: &str| text.parse().unwrap_or(f64::from(u8::from(text == "true")));
-        assert_eq!(
-            typed.attribute("start").map(number),
-            value.attribute("start").map(number)
-        );
+        assert_eq!(typed.attribute("start").map(number), value.attribute("start").map(number));
         assert_eq!(typed.has_attribute("start"), value.has_attribute("start"));
     }
     for part in [
@@ -61,12 +55,7 @@ fn every_number_is_set_and_read_as_real() {
     assert_eq!(typed.set_integer("solver.modes", 5), fmi2OK);
     assert_eq!(typed.set_boolean("effects.energy", true), fmi2OK);
     assert_eq!(typed.set_real("excitation.amplitude", 500.0), fmi2OK);
-    let names = [
-        "effects.excitation",
-        "solver.modes",
-        "effects.energy",
-        "excitation.amplitude",
-    ];
+    let names = ["effects.excitation", "solver.modes", "effects.energy", "excitation.amplitude"];
     assert_eq!(plain.set_reals(names, [2.0, 5.0, 1.0, 500.0]), fmi2OK);
     let mut closed = Vec::new();
     for fmu in [&typed, &plain] {
@@ -102,11 +91,7 @@ fn every_number_is_set_and_read_as_real() {
 #[test]
 fn a_number_that_stands_for_nothing_is_discarded() {
     for (name, value, parts) in [
-        (
-            "effects.excitation",
-            2.5,
-            ["effects.excitation = 2.5", "allowed is a whole number"],
-        ),
+        ("effects.excitation", 2.5, ["effects.excitation = 2.5", "allowed is a whole number"]),
         ("effects.excitation", 9.0, ["effects.excitation = 9", "Sine"]),
         ("effects.energy", 2.0, ["effects.energy = 2", "allowed is 0 or 1"]),
         ("effects.energy", 0.5, ["effects.energy = 0.5", "allowed is 0 or 1"]),
@@ -119,16 +104,8 @@ fn a_number_that_stands_for_nothing_is_discarded() {
         assert_ne!(fmu.real("beam.length"), 0.02, "all or none");
     }
     let fmu = plain();
-    fmu.answers(
-        fmu.set_real("contact.closed", 1.0),
-        fmi2Error,
-        &["contact.closed", "computed"],
-    );
+    fmu.answers(fmu.set_real("contact.closed", 1.0), fmi2Error, &["contact.closed", "computed"]);
     let fmu = plain();
     fmu.initialize();
-    fmu.answers(
-        fmu.set_real("effects.energy", 1.0),
-        fmi2Error,
-        &["effects.energy", "fixed parameter"],
-    );
+    fmu.answers(fmu.set_real("effects.energy", 1.0), fmi2Error, &["effects.energy", "fixed parameter"]);
 }

@@ -20,10 +20,7 @@ fn location(folder: &str) -> CString {
 
 /// An instance whose resources are the project's scenes.
 fn in_scenes() -> Instance {
-    Instance::with(&Arguments {
-        resources: Some(&location("scenes")),
-        ..Arguments::default()
-    })
+    Instance::with(&Arguments { resources: Some(&location("scenes")), ..Arguments::default() })
 }
 
 fn sprung() -> Instance {
@@ -40,10 +37,7 @@ fn a_spring_of_the_resources_is_read_and_can_be_left_again() {
     assert_eq!(plain.string("beam.file"), "");
     assert_eq!(fmu.string("beam.file"), FILE);
     let (uniform, tapered) = (plain.real("preload.force"), fmu.real("preload.force"));
-    assert!(
-        tapered > 0.0 && (tapered - uniform).abs() > 0.1 * uniform,
-        "{uniform} {tapered}"
-    );
+    assert!(tapered > 0.0 && (tapered - uniform).abs() > 0.1 * uniform, "{uniform} {tapered}");
     assert_eq!(fmu.reset(), fmi2OK);
     assert_eq!(fmu.string("beam.file"), "");
     fmu.initialize();
@@ -70,11 +64,9 @@ fn a_state_keeps_its_spring_where_there_is_no_file_or_another_spring() {
         let expected = trace(&fmu, 30, 60, 2e-5);
         let (other, _) = carrying(GUID, "hole-and-rivet-modes.toml");
         // Without resources; and in the step where another spring is used.
-        for (other, kept) in [
-            (Instance::new(), ""),
-            (Instance::initialized(), ""),
-            (other, "hole-and-rivet-modes.toml"),
-        ] {
+        for (other, kept) in
+            [(Instance::new(), ""), (Instance::initialized(), ""), (other, "hole-and-rivet-modes.toml")]
+        {
             let (status, made) = other.from_bytes(&bytes);
             assert_eq!((status, other.to_bytes(made)), (fmi2OK, bytes.clone()));
             for state in [made, saved] {
@@ -98,14 +90,8 @@ fn a_file_that_is_no_spring_is_discarded_and_changes_nothing() {
         ("/", &["/: cannot be read: not a file"]),
         ("springs", &["scenes/springs: cannot be read: not a file"]),
         ("/dev/zero", &["/dev/zero: cannot be read: not a file"]),
-        (
-            "at-rest.toml",
-            &["scenes/at-rest.toml:2: stop: no such key, allowed are"],
-        ),
-        (
-            &long,
-            &["beam.file = \"aaaa", "allowed is a path in UTF-8 of at most 4096 bytes"],
-        ),
+        ("at-rest.toml", &["scenes/at-rest.toml:2: stop: no such key, allowed are"]),
+        (&long, &["beam.file = \"aaaa", "allowed is a path in UTF-8 of at most 4096 bytes"]),
     ] {
         fmu.answers(fmu.set_string("beam.file", file), fmi2Discard, parts);
         assert_eq!(fmu.string("beam.file"), FILE);
@@ -119,17 +105,10 @@ fn a_file_that_is_no_spring_is_discarded_and_changes_nothing() {
     fmu.answers(
         fmu.set_string("beam.file", FILE),
         fmi2Discard,
-        &[
-            "springs/tapered-cube.toml: cannot be read: a relative path",
-            "fmuResourceLocation",
-        ],
+        &["springs/tapered-cube.toml: cannot be read: a relative path", "fmuResourceLocation"],
     );
     let fmu = Instance::initialized();
-    fmu.answers(
-        fmu.set_string("beam.file", ""),
-        fmi2Error,
-        &["beam.file: cannot be set in the state step complete"],
-    );
+    fmu.answers(fmu.set_string("beam.file", ""), fmi2Error, &["beam.file: cannot be set in the state step complete"]);
 }
 
 #[test]
@@ -171,14 +150,9 @@ fn the_guid_says_which_spring_a_component_carries() {
             assert_eq!(fmu.string("beam.file"), name, "after a reset");
         }
     }
-    let [uniform, tapered, holed, ref plain @ ..] = frequencies[..] else {
-        panic!("{frequencies:?}")
-    };
+    let [uniform, tapered, holed, ref plain @ ..] = frequencies[..] else { panic!("{frequencies:?}") };
     assert_eq!(plain, [tapered, holed]);
-    assert!(
-        (tapered - uniform).abs() > 10.0 && (holed - tapered).abs() > 10.0,
-        "{frequencies:?}"
-    );
+    assert!((tapered - uniform).abs() > 10.0 && (holed - tapered).abs() > 10.0, "{frequencies:?}");
     guids.sort();
     guids.dedup();
     assert_eq!(guids.len(), 6);
@@ -200,17 +174,10 @@ fn a_description_without_the_spring_that_belongs_to_it_is_refused() {
     ] {
         let log = Log::default();
         let resources = resources.map(CString::as_c_str);
-        let wrong = Arguments {
-            guid: Some(&guid),
-            resources,
-            ..Arguments::default()
-        };
+        let wrong = Arguments { guid: Some(&guid), resources, ..Arguments::default() };
         assert!(wrong.instantiate(fmi2Instantiate, Some(&callbacks(&log))).is_null());
         let messages = log.into_inner().unwrap();
         let told = |part: &str| messages.iter().any(|message| message.text.contains(part));
-        assert!(
-            told("spring file do not belong together") && told(&guid),
-            "{messages:?}"
-        );
+        assert!(told("spring file do not belong together") && told(&guid), "{messages:?}");
     }
 }

@@ -61,10 +61,7 @@ fn a_point_off_by_a_small_part_of_the_step_is_a_warning_at_the_first_time() {
     // of 0.05 N at 1 kHz changes by 2 pi f times it within the time.
     let check = |importer: &dyn Fn(u32) -> (f64, f64), end: f64, off: f64| {
         let (fmu, found) = forces(1000, importer);
-        let parts = [
-            "fmi2DoStep: currentCommunicationPoint = ",
-            "the time of the instance was",
-        ];
+        let parts = ["fmi2DoStep: currentCommunicationPoint = ", "the time of the instance was"];
         fmu.expect_message(fmi2Warning, &parts);
         let reached = fmu.last_successful_time().1;
         assert!((reached - end).abs() <= f64::EPSILON * end, "{reached} s, not {end} s");
@@ -114,10 +111,7 @@ fn a_communication_step_of_any_length_answers() {
     assert_eq!(fmu.step(1e-3, 1e6), fmi2Error);
     assert_eq!(outputs(), before);
     let messages = fmu.messages();
-    let text = messages
-        .first()
-        .map(|message| message.text.as_str())
-        .unwrap_or_default();
+    let text = messages.first().map(|message| message.text.as_str()).unwrap_or_default();
     let reached = text.split_once("t = ").and_then(|(_, rest)| rest.split_once(" s: "));
     let (reached, advice) = reached.unwrap_or_else(|| panic!("{messages:?}"));
     // A second of the scene takes some ten milliseconds, so that it comes to minutes.

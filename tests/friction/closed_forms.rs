@@ -53,11 +53,8 @@ fn grip(scene: &Scene) -> (f64, f64) {
     (scene.friction.coefficient * force, stiffness)
 }
 
-const ALONG: [RealOutput; 3] = [
-    RealOutput::ContactTangentialForce,
-    RealOutput::ContactSlip,
-    RealOutput::FrictionEnergy,
-];
+const ALONG: [RealOutput; 3] =
+    [RealOutput::ContactTangentialForce, RealOutput::ContactSlip, RealOutput::FrictionEnergy];
 
 /// Displacement along the spring, from the slip and what the tangential spring gives.
 fn displacements(rows: &[[f64; 3]], stiffness: f64) -> Vec<f64> {
@@ -104,10 +101,7 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
         let moved = displacements(&rows[last..], stiffness);
         let found = moved.iter().map(|x| x.abs()).fold(0.0, f64::max);
         let spring = MASS * (TAU * OWN).powi(2);
-        let (v, u) = (
-            1.0 / (1.0 - ratio * ratio),
-            (PI / ratio).sin() / (ratio * (1.0 + (PI / ratio).cos())),
-        );
+        let (v, u) = (1.0 / (1.0 - ratio * ratio), (PI / ratio).sin() / (ratio * (1.0 + (PI / ratio).cos())));
         let expected = limit / friction / spring * (v * v - (friction * u).powi(2)).sqrt();
         // Two thousand instants a cycle miss the extreme by 3e-6 of it.
         close(format_args!("{ratio} {friction}"), found, expected, 3e-4);
@@ -128,9 +122,7 @@ fn no_energy_is_made_over_many_cycles() {
     let period = 1.0 / 80.0;
     let mut distance = 0.0;
     for k in 0..cycles / 10 {
-        simulation
-            .step(&Inputs::default(), 10.0 * period * f64::from(k), 10.0 * period)
-            .unwrap();
+        simulation.step(&Inputs::default(), 10.0 * period * f64::from(k), 10.0 * period).unwrap();
         let slid = simulation.real(RealOutput::ContactSlipDistance);
         assert!(slid > distance);
         distance = slid;
@@ -149,11 +141,7 @@ fn what_sticks_is_a_rotational_spring() {
     for height in [1e-4, 1e-3, 5e-3] {
         let mut scene = rubbing(undamped());
         scene.effects.axial_force = relay_contact::variables::AxialForceKind::None;
-        (
-            scene.friction.initial,
-            scene.friction.coefficient,
-            scene.tip.contact_height,
-        ) = (0.0, 1.0, height);
+        (scene.friction.initial, scene.friction.coefficient, scene.tip.contact_height) = (0.0, 1.0, height);
         (scene.solver.tolerance, scene.solver.modes) = (1e-9, 40);
         let model = Model::new(&scene, 0.0).unwrap();
         let normal = model.preload.contact_stiffness;
@@ -193,18 +181,11 @@ fn what_sticks_is_a_rotational_spring() {
         let period = TAU / omega;
         for quarter in 0..41_u32 {
             let size = 0.25 * period;
-            simulation
-                .step(&Inputs::default(), f64::from(quarter) * size, size)
-                .unwrap();
+            simulation.step(&Inputs::default(), f64::from(quarter) * size, size).unwrap();
             let expected = swing * (0.5 * PI * f64::from(quarter + 1)).cos();
             let found = simulation.real(RealOutput::ContactForce) - force;
             // The law bends by the swing over the preload, 1e-4, in the second harmonic.
-            near(
-                format_args!("{height} m, quarter {quarter}"),
-                found,
-                expected,
-                1e-3 * swing,
-            );
+            near(format_args!("{height} m, quarter {quarter}"), found, expected, 1e-3 * swing);
         }
         assert_eq!(simulation.real(RealOutput::FrictionEnergy), 0.0);
     }

@@ -18,14 +18,9 @@ pub fn rubbing(mut scene: Scene) -> Scene {
 /// Tangential over normal stiffness of the contact (Mindlin; MODEL equations written out).
 fn stiffness_ratio(contact: &Contact) -> f64 {
     let both = [contact.moving, contact.fixed];
-    let shear: f64 = both
-        .iter()
-        .map(|of| (2.0 - of.poisson_ratio) / (of.youngs_modulus / (2.0 * (1.0 + of.poisson_ratio))))
-        .sum();
-    let normal: f64 = both
-        .iter()
-        .map(|of| (1.0 - of.poisson_ratio * of.poisson_ratio) / of.youngs_modulus)
-        .sum();
+    let shear: f64 =
+        both.iter().map(|of| (2.0 - of.poisson_ratio) / (of.youngs_modulus / (2.0 * (1.0 + of.poisson_ratio)))).sum();
+    let normal: f64 = both.iter().map(|of| (1.0 - of.poisson_ratio * of.poisson_ratio) / of.youngs_modulus).sum();
     8.0 / shear / (2.0 / normal)
 }
 
@@ -43,10 +38,7 @@ fn a_contact_without_coefficient_or_height_moves_as_without_friction() {
             let found = forces(&scene, 7e-6, 600);
             let wrong = largest_difference(&found, &expected) / largest;
             // Each is right to the tolerance.
-            assert!(
-                wrong < 2.0 * tolerance,
-                "{amplitude} m/s2, mu {coefficient}, {height} m: {wrong:e}"
-            );
+            assert!(wrong < 2.0 * tolerance, "{amplitude} m/s2, mu {coefficient}, {height} m: {wrong:e}");
         }
     }
 }
@@ -91,10 +83,7 @@ fn friction_never_exceeds_its_limit_in_hard_cases() {
                         );
                         let now =
                             [RealOutput::ContactSlipDistance, RealOutput::FrictionEnergy].map(|of| simulation.real(of));
-                        assert!(
-                            now[0] >= distance && now[1] >= dissipated,
-                            "{case}: {now:?} at {time} s"
-                        );
+                        assert!(now[0] >= distance && now[1] >= dissipated, "{case}: {now:?} at {time} s");
                         ([distance, dissipated], scale) = (now, scale.max(greatest));
                     }
                     // A force wrong by the tolerance along the way of the contact.

@@ -38,15 +38,8 @@ fn squealing(loads: [f64; 2]) -> Scene {
         rotation: Some((contact - load) / share),
         ..mode(frequency, contact, 0.0)
     });
-    let slide = GivenMode {
-        damping: Some(0.0),
-        rotation: Some(1.0 / scene.tip.contact_height),
-        ..mode(0.1, 0.0, 0.0)
-    };
-    let compliance = MODES
-        .iter()
-        .map(|(frequency, contact)| (contact / (TAU * frequency)).powi(2))
-        .sum();
+    let slide = GivenMode { damping: Some(0.0), rotation: Some(1.0 / scene.tip.contact_height), ..mode(0.1, 0.0, 0.0) };
+    let compliance = MODES.iter().map(|(frequency, contact)| (contact / (TAU * frequency)).powi(2)).sum();
     // Some FORCE on contact and spring; each mode gives way to its load.
     scene.contact.overtravel = FORCE / ((1.0 - EXPONENT) * STIFFNESS);
     scene.spring = spring_file("two modes", of_modes(compliance, flexible.chain([slide])));
@@ -62,22 +55,12 @@ fn closed_form(stiffness: f64, loads: [f64; 2]) -> Complex<f64> {
     let root = Complex::new(0.25 * (a - d).powi(2) + product, 0.0).sqrt();
     let squares = [-0.5 * (a + d) + root, -0.5 * (a + d) - root];
     let values = squares.map(Complex::sqrt);
-    if values[0].re > values[1].re {
-        values[0]
-    } else {
-        values[1]
-    }
+    if values[0].re > values[1].re { values[0] } else { values[1] }
 }
 
 fn told(model: &Model) -> Vec<(bool, f64, f64, f64)> {
     let slips = model.remarks().into_iter().filter_map(|remark| match remark {
-        Remark::UnstableSlip {
-            away,
-            force,
-            growth,
-            frequency,
-            ..
-        } => Some((away, force, growth, frequency)),
+        Remark::UnstableSlip { away, force, growth, frequency, .. } => Some((away, force, growth, frequency)),
         _ => None,
     });
     slips.collect()

@@ -56,14 +56,9 @@ fn outputs(simulation: &Simulation) -> [Vec<u64>; 2] {
 fn a_mirrored_relay_has_the_same_bits() {
     let gap = 2e-5;
     let mut made = [0; 2];
-    for (case, kind) in [
-        ExcitationKind::Sine,
-        ExcitationKind::LogSweep,
-        ExcitationKind::HalfSine,
-        ExcitationKind::None,
-    ]
-    .into_iter()
-    .enumerate()
+    for (case, kind) in [ExcitationKind::Sine, ExcitationKind::LogSweep, ExcitationKind::HalfSine, ExcitationKind::None]
+        .into_iter()
+        .enumerate()
     {
         let mut scene = changeover(gap);
         scene.effects.excitation = kind;
@@ -77,14 +72,7 @@ fn a_mirrored_relay_has_the_same_bits() {
             let mut image = scene.clone();
             image.excitation.amplitude = -scene.excitation.amplitude;
             let at = |sign: f64, time: f64| {
-                accelerated(
-                    sign * if kind == ExcitationKind::None {
-                        250.0
-                    } else {
-                        30.0 * (2e3 * time).sin()
-                    },
-                    0.0,
-                )
+                accelerated(sign * if kind == ExcitationKind::None { 250.0 } else { 30.0 * (2e3 * time).sin() }, 0.0)
             };
             let mut own = Simulation::new(&scene, &at(1.0, 0.0), 0.0).unwrap();
             let mut other = Simulation::new(&image, &at(-1.0, 0.0), 0.0).unwrap();
@@ -112,11 +100,9 @@ fn a_mirrored_relay_has_the_same_bits() {
 /// A second contact so far away that it is not reached leaves every bit of the first as it is.
 #[test]
 fn a_far_second_contact_changes_nothing() {
-    for (kind, amplitude) in [
-        (ExcitationKind::Sine, 400.0),
-        (ExcitationKind::Random, 0.0),
-        (ExcitationKind::HalfSine, -490.0),
-    ] {
+    for (kind, amplitude) in
+        [(ExcitationKind::Sine, 400.0), (ExcitationKind::Random, 0.0), (ExcitationKind::HalfSine, -490.0)]
+    {
         let mut scene = Scene::default();
         scene.effects.excitation = kind;
         scene.excitation.amplitude = amplitude;
@@ -140,10 +126,7 @@ fn a_far_second_contact_changes_nothing() {
                 let steps = |simulation: &Simulation| simulation.integer(IntegerOutput::SolverSteps);
                 assert_eq!(steps(&alone), steps(&with), "{kind:?} {size} s at {time} s");
             }
-            assert!(
-                alone.real(RealOutput::ContactLastOpening) > 0.0,
-                "{kind:?} does not open"
-            );
+            assert!(alone.real(RealOutput::ContactLastOpening) > 0.0, "{kind:?} does not open");
         }
     }
 }
@@ -162,10 +145,7 @@ fn a_closed_start_is_no_false_make() {
     assert_eq!(run(&scene), (0, 0));
     scene.excitation.amplitude = 400.0;
     let (interruptions, makes) = run(&scene);
-    assert!(
-        interruptions > 2 && (0..=1).contains(&(interruptions - makes)),
-        "{interruptions}, {makes}"
-    );
+    assert!(interruptions > 2 && (0..=1).contains(&(interruptions - makes)), "{interruptions}, {makes}");
     // The minimum duration is that of makes.
     scene.second.minimum_duration = 1.0;
     assert_eq!(run(&scene), (interruptions, 0));
@@ -178,20 +158,14 @@ fn fixed_contacts_do_not_meet() {
     scene.effects.second_contact = true;
     scene.contact.overtravel = -1e-4;
     let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-    let inputs = |second_displacement| Inputs {
-        second_displacement,
-        ..Inputs::default()
-    };
+    let inputs = |second_displacement| Inputs { second_displacement, ..Inputs::default() };
     // Into the spring, to within 10 um of the first, and held there.
     for (time, displacement) in [(0.0, 3.9e-4), (1e-2, 3.9e-4)] {
         simulation.step(&inputs(displacement), time, 1e-2).unwrap();
     }
     assert!(simulation.real(RealOutput::SecondForce) > 0.0);
     let error = simulation.step(&inputs(4.1e-4), 2e-2, 1e-3).unwrap_err().to_string();
-    assert!(
-        error.contains("second.displacement = 0.00041 m") && error.contains("less than 0.00039999"),
-        "{error}"
-    );
+    assert!(error.contains("second.displacement = 0.00041 m") && error.contains("less than 0.00039999"), "{error}");
     // The step that failed has changed nothing.
     simulation.step(&inputs(3.9e-4), 2e-2, 1e-3).unwrap();
 }

@@ -73,13 +73,8 @@ fn a_scene_names_its_spring_relative_to_itself() {
     let file = SceneFile::read(Path::new("scenes/tapered-spring.toml")).unwrap();
     let spring = file.scene.spring.as_ref().unwrap();
     assert_eq!(spring.name, "springs/tapered-cube.toml");
-    let Shape::Segments(Segments {
-        segments,
-        masses,
-        contact_position,
-        clamp_stiffness,
-        fork_position: None,
-    }) = &spring.shape
+    let Shape::Segments(Segments { segments, masses, contact_position, clamp_stiffness, fork_position: None }) =
+        &spring.shape
     else {
         panic!("{spring:?}");
     };
@@ -97,18 +92,11 @@ type Spoil = fn(&mut Segments);
 fn a_spring_that_was_not_read_is_checked_too() {
     let good = Segments {
         segments: vec![segment(0.01, [4e-3; 2], [2e-4; 2]); 2],
-        masses: vec![PointMass {
-            position: 0.02,
-            mass: 1e-6,
-            rotary_inertia: 0.0,
-        }],
+        masses: vec![PointMass { position: 0.02, mass: 1e-6, rotary_inertia: 0.0 }],
         ..Segments::default()
     };
     let refusal = |shape: Shape| {
-        let scene = Scene {
-            fixed_spring: spring_file("own.toml", shape),
-            ..Scene::default()
-        };
+        let scene = Scene { fixed_spring: spring_file("own.toml", shape), ..Scene::default() };
         Model::new(&scene, 0.0).map_or_else(|error| error.to_string(), |_| String::new())
     };
     assert_eq!(refusal(Shape::Segments(good.clone())), "");
@@ -127,24 +115,15 @@ fn a_spring_that_was_not_read_is_checked_too() {
         let mut spring = good.clone();
         spoil(&mut spring);
         let said = refusal(Shape::Segments(spring));
-        assert!(
-            said.starts_with("own.toml: ") && said.contains(expected),
-            "{expected:?} missing: {said}"
-        );
+        assert!(said.starts_with("own.toml: ") && said.contains(expected), "{expected:?} missing: {said}");
     }
     for (given, expected) in [
         (mode(-1.0, 1.0, 0.0), "frequency = -1 Hz"),
         (mode(100.0, f64::NAN, 0.0), "contact = NaN 1/sqrt(kg)"),
         (mode(100.0, 1.0, 2.0), "participation = 2 sqrt(kg)"),
-        (
-            mode(100.0, 50.0, 0.0),
-            "compliance = 0.001 m/N: not allowed, allowed is 0.00633",
-        ),
+        (mode(100.0, 50.0, 0.0), "compliance = 0.001 m/N: not allowed, allowed is 0.00633"),
     ] {
         let said = refusal(of_modes(1e-3, [given]));
-        assert!(
-            said.starts_with("own.toml: ") && said.contains(expected),
-            "{expected:?} missing: {said}"
-        );
+        assert!(said.starts_with("own.toml: ") && said.contains(expected), "{expected:?} missing: {said}");
     }
 }

@@ -34,10 +34,7 @@ fn cut(scene: &Scene, shares: &[f64]) -> Scene {
 
 /// Bending stiffness and mass per length of a rectangle of the scene's materials.
 fn section(scene: &Scene, width: f64, thickness: f64) -> (f64, f64) {
-    (
-        scene.beam.youngs_modulus * width * thickness.powi(3) / 12.0,
-        scene.beam.density * width * thickness,
-    )
+    (scene.beam.youngs_modulus * width * thickness.powi(3) / 12.0, scene.beam.density * width * thickness)
 }
 
 /// The angular frequencies of the free spring, rad/s.
@@ -63,12 +60,9 @@ fn agree(scene: &Scene, expected: &[f64]) {
 
 #[test]
 fn segments_of_the_uniform_section_are_the_uniform_spring() {
-    for axial in [
-        AxialForceKind::FromPreload,
-        AxialForceKind::None,
-        AxialForceKind::FromDeflection,
-        AxialForceKind::Prescribed,
-    ] {
+    for axial in
+        [AxialForceKind::FromPreload, AxialForceKind::None, AxialForceKind::FromDeflection, AxialForceKind::Prescribed]
+    {
         let mut scene = shaken(400.0, 1000.0);
         scene.effects.axial_force = axial;
         scene.beam.axial_force = 4.0;
@@ -118,10 +112,7 @@ fn a_wedge_has_the_frequencies_of_its_bessel_functions() {
             segment(0.5 * length, [width; 2], [half, share * thickness]),
         ];
         for segments in [vec![whole], halves.to_vec()] {
-            agree(
-                &with(scene.clone(), of_segments(segments)),
-                &expected.map(|value| value * unit),
-            );
+            agree(&with(scene.clone(), of_segments(segments)), &expected.map(|value| value * unit));
         }
     }
 }
@@ -139,32 +130,15 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
         };
         // A mass on the first step, one inside the second segment, the rivet 3 mm short of the end.
         let expected = [
-            Stretch {
-                mass: 1e-5,
-                inertia: 2e-11,
-                ..stretch(a)
-            },
-            Stretch {
-                mass: 4e-6,
-                ..stretch((0.002, b.1, b.2))
-            },
+            Stretch { mass: 1e-5, inertia: 2e-11, ..stretch(a) },
+            Stretch { mass: 4e-6, ..stretch((0.002, b.1, b.2)) },
             stretch((0.003, b.1, b.2)),
-            Stretch {
-                mass: 2e-5,
-                inertia: 3e-12,
-                ..stretch((0.005, c.1, c.2))
-            },
+            Stretch { mass: 2e-5, inertia: 3e-12, ..stretch((0.005, c.1, c.2)) },
             stretch((0.003, c.1, c.2)),
         ];
-        let point = |position, mass, rotary_inertia| PointMass {
-            position,
-            mass,
-            rotary_inertia,
-        };
+        let point = |position, mass, rotary_inertia| PointMass { position, mass, rotary_inertia };
         let segments = Segments {
-            segments: [a, b, c]
-                .map(|(length, width, thickness)| uniform(length, width, thickness))
-                .to_vec(),
+            segments: [a, b, c].map(|(length, width, thickness)| uniform(length, width, thickness)).to_vec(),
             masses: vec![point(0.009, 4e-6, 0.0), point(0.007, 1e-5, 2e-11)],
             contact_position: Some(0.017),
             fork_position: None,
@@ -182,11 +156,7 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
         let frequency = TAU * model.frequency;
         assert!((frequency / omega - 1.0).abs() < 1e-9, "{frequency} {omega}");
         // Statics: M^2 / (E I), and the rotation of the clamp.
-        let mut compliance = if clamp.is_finite() {
-            0.017_f64.powi(2) / clamp
-        } else {
-            0.0
-        };
+        let mut compliance = if clamp.is_finite() { 0.017_f64.powi(2) / clamp } else { 0.0 };
         let mut left = 0.017;
         for part in &expected[..4] {
             let right: f64 = left - part.length;
@@ -196,15 +166,8 @@ fn steps_masses_and_a_soft_clamp_have_their_exact_frequencies() {
         let spring = Spring::new(&scene);
         let found = spring.statics.tip_compliance(0.0);
         assert!((found / compliance - 1.0).abs() < 1e-12, "{found} {compliance}");
-        let sum: f64 = model
-            .modes
-            .iter()
-            .map(|mode| mode.tip.powi(2) / mode.omega_squared)
-            .sum();
-        assert!(
-            (sum / spring.statics.tip_compliance(model.preload.axial_force) - 1.0).abs() < 1e-9,
-            "{sum} {found}"
-        );
+        let sum: f64 = model.modes.iter().map(|mode| mode.tip.powi(2) / mode.omega_squared).sum();
+        assert!((sum / spring.statics.tip_compliance(model.preload.axial_force) - 1.0).abs() < 1e-9, "{sum} {found}");
     }
 }
 

@@ -17,11 +17,7 @@ use super::{TAU, with};
 fn written(model: &Model) -> Modes {
     let modes = model.modes.iter();
     let modes = modes.map(|own| mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation));
-    Modes {
-        compliance: 1.0 / model.section.tip_stiffness(),
-        parallel_compliance: None,
-        modes: modes.collect(),
-    }
+    Modes { compliance: 1.0 / model.section.tip_stiffness(), parallel_compliance: None, modes: modes.collect() }
 }
 
 #[test]
@@ -31,11 +27,7 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
         let plain = Model::new(&scene, 0.0).unwrap();
         let given = with(scene.clone(), Shape::Modes(written(&plain)));
         let model = Model::new(&given, 0.0).unwrap();
-        assert_eq!(
-            model.modes.len(),
-            plain.modes.len(),
-            "nothing is missing in the Ritz modes"
-        );
+        assert_eq!(model.modes.len(), plain.modes.len(), "nothing is missing in the Ritz modes");
         assert_eq!(model.remarks(), []);
         for (found, expected) in [
             (model.preload.force, plain.preload.force),
@@ -54,10 +46,7 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
 /// Modes say what the rivet, the material and the place of a pusher do; tongues are joined where no second contact is on one.
 #[test]
 fn what_does_not_count_beside_a_file_is_told() {
-    let mut scene = with(
-        Scene::default(),
-        Shape::Modes(written(&Model::new(&Scene::default(), 0.0).unwrap())),
-    );
+    let mut scene = with(Scene::default(), Shape::Modes(written(&Model::new(&Scene::default(), 0.0).unwrap())));
     (scene.tip.mass, scene.beam.density, scene.pusher.position) = (2e-4, 8000.0, 0.005);
     let names = |scene: &Scene| -> Vec<_> {
         let remarks = Model::new(scene, 0.0).unwrap().remarks();
@@ -69,10 +58,7 @@ fn what_does_not_count_beside_a_file_is_told() {
     };
     assert_eq!(names(&scene), ["beam.density", "tip.mass", "pusher.position"]);
     // The fixed contact's may be of that material.
-    let bar = Segments {
-        segments: vec![segment(0.01, [4e-3; 2], [3e-4; 2])],
-        ..Segments::default()
-    };
+    let bar = Segments { segments: vec![segment(0.01, [4e-3; 2], [3e-4; 2])], ..Segments::default() };
     scene.fixed_spring = with(Scene::default(), Shape::Segments(bar)).spring;
     assert_eq!(names(&scene), ["tip.mass", "pusher.position"]);
     let forked = Segments {
@@ -111,10 +97,7 @@ fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
     let expected = forces(&scene, 1e-4, 100);
     let swing = expected.iter().map(|force| (force - 0.152).abs()).fold(0.0, f64::max);
     let error = |count: usize| {
-        let modes = Modes {
-            modes: all.modes[..count].to_vec(),
-            ..all.clone()
-        };
+        let modes = Modes { modes: all.modes[..count].to_vec(), ..all.clone() };
         let scene = with(scene.clone(), Shape::Modes(modes));
         let model = Model::new(&scene, 0.0).unwrap();
         assert_eq!(model.modes.len(), count + 1);
@@ -131,10 +114,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     let (mass, frequency, contact) = (1e-4_f64, 1000.0, 0.9);
     let omega_squared = (TAU * frequency).powi(2);
     let held = contact * contact / mass / omega_squared;
-    let given = GivenMode {
-        damping: Some(0.01),
-        ..mode(frequency, contact / mass.sqrt(), mass.sqrt())
-    };
+    let given = GivenMode { damping: Some(0.01), ..mode(frequency, contact / mass.sqrt(), mass.sqrt()) };
     let mut scene = shaken(20.0, 300.0);
     scene.effects.contact_law = ContactLawKind::Bonded;
     scene.contact.damping = 0.0;
@@ -146,10 +126,8 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     close("frequency, Hz", model.frequency, expected, 1e-7);
     // Steady state by the same series: q = -g a / (omega_0^2 - omega^2 + k_s T^2 + i omega c), F = -k_s T q.
     let omega = TAU * 300.0;
-    let (real, imaginary) = (
-        omega_squared - omega * omega + series * contact * contact / mass,
-        omega * 0.02 * omega_squared.sqrt(),
-    );
+    let (real, imaginary) =
+        (omega_squared - omega * omega + series * contact * contact / mass, omega * 0.02 * omega_squared.sqrt());
     let amplitude = 20.0 * mass.sqrt() * series * contact / mass.sqrt() / real.hypot(imaginary);
     let late = &forces(&scene, 1e-4, 2000)[1000..];
     let middle = model.preload.force;
@@ -166,9 +144,7 @@ fn each_mode_may_have_its_own_damping() {
         mode.damping = (n > 0).then_some(0.03);
     }
     let model = Model::new(&with(scene.clone(), Shape::Modes(modes)), 0.0).unwrap();
-    let [first, second, ..] = model.modes.as_slice() else {
-        panic!()
-    };
+    let [first, second, ..] = model.modes.as_slice() else { panic!() };
     let beta = scene.beam.stiffness_damping;
     assert_eq!(first.damping, beta * first.omega_squared);
     assert!((second.damping / (0.06 * second.omega_squared.sqrt()) - 1.0).abs() < 1e-12);
@@ -198,11 +174,7 @@ fn mass_damping_limits_a_mode_at_its_resonance() {
 fn contacts_side_by_side_have_a_residual_compliance_each() {
     let (held, rest) = (8e-4, 3e-4);
     let displacement = TAU * 800.0 * f64::sqrt(held);
-    let given = GivenMode {
-        damping: Some(1.0),
-        parallel: Some(displacement),
-        ..mode(800.0, displacement, 5e-3)
-    };
+    let given = GivenMode { damping: Some(1.0), parallel: Some(displacement), ..mode(800.0, displacement, 5e-3) };
     let mut scene = with(Scene::default(), of_modes(held + rest, [given]));
     scene.effects.parallel_contact = true;
     scene.parallel.curvature_radius = scene.contact.curvature_radius;
@@ -225,10 +197,7 @@ fn contacts_side_by_side_have_a_residual_compliance_each() {
 fn springs_of_more_modes_than_there_is_room_for_keep_their_compliance() {
     let given = |size: f64| {
         let modes = (1..=100).map(|n| mode(500.0 * f64::from(n), size, 0.0));
-        let held: f64 = modes
-            .clone()
-            .map(|mode| mode.contact.powi(2) / mode.omega_squared())
-            .sum();
+        let held: f64 = modes.clone().map(|mode| mode.contact.powi(2) / mode.omega_squared()).sum();
         (1.3 * held, of_modes(1.3 * held, modes))
     };
     let [(moving, shape), (fixed, other)] = [given(100.0), given(50.0)];
@@ -237,11 +206,7 @@ fn springs_of_more_modes_than_there_is_room_for_keep_their_compliance() {
     for count in [0, 64] {
         scene.solver.modes = count;
         let model = Model::new(&scene, 0.0).unwrap();
-        let found = model
-            .modes
-            .iter()
-            .map(|mode| mode.tip.powi(2) / mode.omega_squared)
-            .sum();
+        let found = model.modes.iter().map(|mode| mode.tip.powi(2) / mode.omega_squared).sum();
         // To rounding.
         close(count, found, moving + fixed, 1e-12);
     }

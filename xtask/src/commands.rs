@@ -48,27 +48,19 @@ pub fn cargo() -> Command {
 
 /// The Python of `.venv`, which `cargo xtask` makes.
 pub fn python() -> Command {
-    command(root().join(if cfg!(windows) {
-        ".venv/Scripts/python.exe"
-    } else {
-        ".venv/bin/python"
-    }))
+    command(root().join(if cfg!(windows) { ".venv/Scripts/python.exe" } else { ".venv/bin/python" }))
 }
 
 /// Runs a program and shows its output; the error names the whole command.
 pub fn run(command: &mut Command) -> Result<()> {
-    let status = command
-        .status()
-        .with_context(|| format!("cannot start: {}", line(command)))?;
+    let status = command.status().with_context(|| format!("cannot start: {}", line(command)))?;
     ensure!(status.success(), "failed ({status}): {}", line(command));
     Ok(())
 }
 
 /// Runs a program and gives what it printed; the error has all of its output.
 pub fn output(command: &mut Command) -> Result<String> {
-    let output = command
-        .output()
-        .with_context(|| format!("cannot start: {}", line(command)))?;
+    let output = command.output().with_context(|| format!("cannot start: {}", line(command)))?;
     if !output.status.success() {
         let [printed, message] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
         let all = format!("{printed}{message}");

@@ -36,10 +36,8 @@ pub fn page() -> Result<PathBuf> {
     let mut packed = GzEncoder::new(Vec::new(), Compression::best());
     packed.write_all(&library()?)?;
     let library = STANDARD.encode(packed.finish()?);
-    let start: serde_json::Map<_, _> = VARIABLES
-        .iter()
-        .map(|variable| (variable.name.to_owned(), json!(variable.start)))
-        .collect();
+    let start: serde_json::Map<_, _> =
+        VARIABLES.iter().map(|variable| (variable.name.to_owned(), json!(variable.start))).collect();
     let part = |name: &str| text(format!("explore/page/{name}"));
     let mut page = part("page.html")?;
     for (mark, contents) in [

@@ -69,12 +69,8 @@ fn build_library(metadata: &Metadata) -> Result<()> {
 /// source files.
 pub fn path_flags(metadata: &Metadata) -> Vec<String> {
     let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
-    let crates: BTreeSet<_> = foreign
-        .filter_map(|package| package.manifest_path.parent()?.parent())
-        .collect();
-    let crates = crates
-        .iter()
-        .map(|folder| format!("--remap-path-prefix={folder}=crates"));
+    let crates: BTreeSet<_> = foreign.filter_map(|package| package.manifest_path.parent()?.parent()).collect();
+    let crates = crates.iter().map(|folder| format!("--remap-path-prefix={folder}=crates"));
     let project = format!("--remap-path-prefix={}=relay-contact", metadata.workspace_root);
     crates.chain([project]).collect()
 }

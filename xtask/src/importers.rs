@@ -51,10 +51,7 @@ fn prepare(component: &Path) -> Result<()> {
         fs::remove_dir_all(&folder).context("cannot clear the table of results")?;
     }
     fmu::build_variant(&Variant::new(true, None)?)?;
-    fmu::build_variant(&Variant::new(
-        false,
-        Some(&root().join("scenes/springs/tapered-cube.toml")),
-    )?)?;
+    fmu::build_variant(&Variant::new(false, Some(&root().join("scenes/springs/tapered-cube.toml")))?)?;
     reference::write(FOLDER)?;
     let description = "SystemStructure.ssd";
     let system = Files::from([

@@ -32,9 +32,7 @@ pub fn texts(crates: &Crates, rustc: &Path, mut files: Files) -> Result<Files> {
     if let Some((name, text)) = standard_library(rustc)? {
         files.insert(format!("{FOLDER}/rust-standard-library/{name}"), text);
     }
-    let names = files
-        .keys()
-        .filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
+    let names = files.keys().filter_map(|path| path.strip_prefix(FOLDER)?.strip_prefix('/'));
     let list = format!(
         "RelayContact is licensed under MIT OR Apache-2.0, at your choice. Its library contains other people's work; \
          all licences are in this folder:\n\n{}\n",
@@ -47,11 +45,9 @@ pub fn texts(crates: &Crates, rustc: &Path, mut files: Files) -> Result<Files> {
 /// The licence text of the standard library, where rustup or Debian's packages put it.
 fn standard_library(rustc: &Path) -> Result<Option<(&'static str, Vec<u8>)>> {
     let documentation = sysroot(rustc)?.join("share/doc");
-    for (folder, name) in [
-        ("rust", "COPYRIGHT-library.html"),
-        ("libstd-rust-web-dev", "copyright"),
-        ("libstd-rust-dev", "copyright"),
-    ] {
+    for (folder, name) in
+        [("rust", "COPYRIGHT-library.html"), ("libstd-rust-web-dev", "copyright"), ("libstd-rust-dev", "copyright")]
+    {
         let path = documentation.join(folder).join(name);
         if path.exists() {
             return Ok(Some((name, read(path)?)));

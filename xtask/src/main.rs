@@ -28,11 +28,7 @@ use clap::{Parser, Subcommand};
 use self::variant::Variant;
 
 #[derive(Parser)]
-#[command(
-    name = "cargo xtask",
-    about = "Tasks of relay-contact",
-    arg_required_else_help = true
-)]
+#[command(name = "cargo xtask", about = "Tasks of relay-contact", arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
     task: Task,

@@ -75,14 +75,8 @@ pub fn run(file: &SceneFile, mut each: impl FnMut(&Simulation, f64) -> Result<()
 fn reference() -> Result<String> {
     let mut table = "time,base.acceleration,run,coupled\n".to_owned();
     let mut held = Inputs::default();
-    let jump = Inputs {
-        base_acceleration: JUMP,
-        ..held
-    };
-    let carried = |first: &Simulation| Inputs {
-        support_displacement: first.real(RealOutput::TipDisplacement),
-        ..jump
-    };
+    let jump = Inputs { base_acceleration: JUMP, ..held };
+    let carried = |first: &Simulation| Inputs { support_displacement: first.real(RealOutput::TipDisplacement), ..jump };
     let (mut single, mut first) = (start(&held)?, start(&jump)?);
     let mut second = start(&carried(&first))?;
     let mut forces = Vec::new();

@@ -62,7 +62,5 @@ pub fn accuracy(arguments: &Arguments) -> Result<()> {
 
 /// Whether Chromium is installed, by one of its names.
 pub fn has_chromium() -> bool {
-    ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"]
-        .into_iter()
-        .any(is_there)
+    ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"].into_iter().any(is_there)
 }

@@ -33,9 +33,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
             return rust();
         }
         // A program of its own, so that its output stays together.
-        both(library, || {
-            output(Command::new(env::current_exe()?).args(["test", "--component"]))
-        })?;
+        both(library, || output(Command::new(env::current_exe()?).args(["test", "--component"])))?;
         // Of what both have left.
         if_installed("report", report::has_chromium(), report::CHROMIUM_MISSING, || {
             python::report("report", &["--quick"])?;
@@ -100,8 +98,6 @@ fn component() -> Result<()> {
     stage("Python types", || tool(&["mypy"]))?;
     // Which the Python tests install into an empty environment.
     stage("wheel", wheel::run)?;
-    stage("Python tests and examples", || {
-        python::test(&["examples/python", "tests/python", "explore"], &component)
-    })?;
+    stage("Python tests and examples", || python::test(&["examples/python", "tests/python", "explore"], &component))?;
     importers::stages(&component)
 }

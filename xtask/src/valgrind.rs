@@ -32,19 +32,11 @@ pub fn run() -> Result<()> {
         .args(["test", "--test=loaded_library"])
         .arg(format!("--config=target.'cfg(unix)'.runner={VALGRIND:?}"))
         // Thousands of instances, and every call in every state, take minutes and add nothing here.
-        .args([
-            "--",
-            "--test-threads=1",
-            "--skip=thousands",
-            "--skip=every_call_in_every_state",
-        ])
+        .args(["--", "--test-threads=1", "--skip=thousands", "--skip=every_call_in_every_state"])
         // Random calls are fifty times slower here.
         .env("CAMPAIGN_CALLS", "2000");
     run_command(&mut campaign)?;
-    let runner = Runner {
-        compiler: vec!["cc".into()],
-        start: VALGRIND.map(Into::into).to_vec(),
-    };
+    let runner = Runner { compiler: vec!["cc".into()], start: VALGRIND.map(Into::into).to_vec() };
     // Cargo builds the library beside the test.
     let built = metadata.target_directory.as_std_path().join("debug/deps");
     let library = built.join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));

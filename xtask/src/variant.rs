@@ -27,30 +27,20 @@ impl Variant {
         } else {
             ("RelayContact", MODEL_DESCRIPTION, GUID)
         };
-        let mut variant = Self {
-            name: name.to_owned(),
-            description: description.to_owned(),
-            spring: None,
-        };
+        let mut variant = Self { name: name.to_owned(), description: description.to_owned(), spring: None };
         if let Some(path) = spring {
             let (file, text) = read(path)?;
             let declaration = declaration("beam.file", description)?;
             variant.name = format!("{name}-{}", file.trim_end_matches(".toml"));
             for (given, carrying) in [
-                (
-                    format!("modelName=\"{name}\""),
-                    format!("modelName=\"{}\"", variant.name),
-                ),
+                (format!("modelName=\"{name}\""), format!("modelName=\"{}\"", variant.name)),
                 (guid.to_owned(), guid_carrying(guid, &file, &text)),
                 (
                     declaration.to_owned(),
                     declaration.replace("<String start=\"\"/>", &format!("<String start=\"{file}\"/>")),
                 ),
             ] {
-                ensure!(
-                    variant.description.matches(&given).count() == 1,
-                    "not once in the description: {given}"
-                );
+                ensure!(variant.description.matches(&given).count() == 1, "not once in the description: {given}");
                 variant.description = variant.description.replace(&given, &carrying);
             }
             variant.spring = Some((file, text));
@@ -99,9 +89,8 @@ mod tests {
             let model = format!("modelName=\"{}\" guid=\"{guid}\"", variant.name);
             assert_eq!(variant.description.matches(&model).count(), 1, "{model}");
             let document = Document::parse(&variant.description)?;
-            let mut carrying = document
-                .descendants()
-                .filter(|node| node.attribute("start") == Some("tapered-cube.toml"));
+            let mut carrying =
+                document.descendants().filter(|node| node.attribute("start") == Some("tapered-cube.toml"));
             let declared = carrying.next().and_then(|value| value.parent()?.attribute("name"));
             assert_eq!((declared, carrying.next()), (Some("beam.file"), None));
         }

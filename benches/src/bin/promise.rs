@@ -35,9 +35,7 @@ struct Arguments {
 fn of_kind(name: &str) -> Result<fn(u64) -> Relay> {
     let found = KINDS.iter().find(|(kind, ..)| *kind == name);
     let allowed = || KINDS.map(|(kind, ..)| kind).join(", ");
-    Ok(found
-        .with_context(|| format!("no such kind, allowed are {}", allowed()))?
-        .2)
+    Ok(found.with_context(|| format!("no such kind, allowed are {}", allowed()))?.2)
 }
 
 fn main() -> Result<()> {
@@ -65,10 +63,7 @@ fn main() -> Result<()> {
     let mut table = fs::create_dir_all(&arguments.folder)
         .and_then(|()| File::create(&path))
         .with_context(|| format!("cannot write {}", path.display()))?;
-    writeln!(
-        table,
-        "relay,kind,damping,opens,tolerance,error,instants,estimate,outcome"
-    )?;
+    writeln!(table, "relay,kind,damping,opens,tolerance,error,instants,estimate,outcome")?;
     let mut written = Ok(());
     judge_each(arguments.first, arguments.count, draw, 0.0, |judged| {
         if written.is_ok() {
@@ -79,17 +74,7 @@ fn main() -> Result<()> {
 }
 
 fn row(judged: &Judged) -> String {
-    let Judged {
-        number,
-        kind,
-        damping,
-        opens,
-        tolerance,
-        error,
-        instants,
-        estimate,
-        outcome,
-    } = judged;
+    let Judged { number, kind, damping, opens, tolerance, error, instants, estimate, outcome } = judged;
     let instants = instants.map_or(String::new(), |instants| format!("{instants:e}"));
     format!("{number},{kind},{damping:e},{opens},{tolerance:e},{error:e},{instants},{estimate:e},{outcome:?}")
 }

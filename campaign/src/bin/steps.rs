@@ -55,11 +55,8 @@ fn through_c(plan: &[(f64, f64)]) -> f64 {
     for call in Call::shaken(AMPLITUDE) {
         assert_eq!(importer.make(&call, 0.0).0, fmi2OK);
     }
-    let (c, input, output) = (
-        importer.component,
-        DESCRIPTION.reference("base.acceleration"),
-        DESCRIPTION.reference("contact.force"),
-    );
+    let (c, input, output) =
+        (importer.component, DESCRIPTION.reference("base.acceleration"), DESCRIPTION.reference("contact.force"));
     let (mut force, mut time, mut value) = (0.0, 0.0, 0.0);
     // SAFETY: pointers to what is declared here.
     unsafe {

@@ -46,23 +46,12 @@ fn calls() -> Vec<Call> {
     let force = DESCRIPTION.reference("contact.force");
     for fault in [Fault::None].into_iter().chain(Fault::ALL) {
         for kind in Kind::ALL {
-            let some: Vec<_> = DESCRIPTION
-                .variables
-                .iter()
-                .filter(|variable| variable.kind == kind)
-                .collect();
+            let some: Vec<_> = DESCRIPTION.variables.iter().filter(|variable| variable.kind == kind).collect();
             let references: Vec<_> = some.iter().map(|variable| variable.reference).take(1).collect();
             let settable = some.iter().find(|variable| variable.role != Role::Output);
-            let values: Vec<_> = settable
-                .iter()
-                .map(|variable| (variable.reference, variable.start))
-                .collect();
+            let values: Vec<_> = settable.iter().map(|variable| (variable.reference, variable.start)).collect();
             for count in [0, 1] {
-                calls.push(Call::Get(
-                    kind,
-                    references[..count.min(references.len())].to_vec(),
-                    fault,
-                ));
+                calls.push(Call::Get(kind, references[..count.min(references.len())].to_vec(), fault));
                 calls.push(Call::Set(kind, values[..count.min(values.len())].to_vec(), fault));
             }
         }
@@ -113,11 +102,7 @@ fn wrong_numbers() -> Vec<Call> {
             calls.push(Call::get(kind, vec![variable.reference]));
             let near = [variable.min, variable.max, variable.min - 1.0, variable.max + 1.0];
             // The value matters only if the function matches the variable.
-            let count = if kind == variable.kind {
-                strange.len() + near.len()
-            } else {
-                1
-            };
+            let count = if kind == variable.kind { strange.len() + near.len() } else { 1 };
             for value in strange.iter().chain(&near).take(count) {
                 // After a valid one, which is not set if the value is wrong.
                 let before = (kind == Kind::Real).then_some((current, 3.0));
@@ -132,10 +117,7 @@ fn wrong_numbers() -> Vec<Call> {
         calls.push(Call::get(Kind::Real, vec![reference]));
         calls.push(Call::set_reals(vec![(reference, 0.0)]));
     }
-    let (input, force) = (
-        DESCRIPTION.reference("base.acceleration"),
-        DESCRIPTION.reference("contact.force"),
-    );
+    let (input, force) = (DESCRIPTION.reference("base.acceleration"), DESCRIPTION.reference("contact.force"));
     for order in [i32::MIN, -1, 0, 2, i32::MAX] {
         calls.push(set_derivative(input, order, 0.0));
         calls.push(get_derivative(force, order));

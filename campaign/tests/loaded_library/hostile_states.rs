@@ -9,11 +9,7 @@ use campaign::hostile::{Outcome, SPECIMENS, changed, meet, repaired, specimen};
 #[test]
 fn a_repaired_specimen_is_the_specimen() {
     let specimen = specimen(&LIBRARY, &[]);
-    assert_eq!(
-        repaired(specimen.clone()),
-        specimen,
-        "the format of saved states has changed"
-    );
+    assert_eq!(repaired(specimen.clone()), specimen, "the format of saved states has changed");
     assert_eq!(meet(&LIBRARY, &specimen, 10), Ok(Outcome::WentOn));
 }
 

@@ -45,10 +45,7 @@ fn a_wrong_guid_type_name_or_no_callbacks_make_no_instance() {
             let error = message.status == fmi2Error && message.category == "logStatusError";
             error && parts.iter().all(|part| message.text.contains(part))
         };
-        assert!(
-            matches!(&messages[..], [message] if told(message)),
-            "{wrong:?}: {messages:?}"
-        );
+        assert!(matches!(&messages[..], [message] if told(message)), "{wrong:?}: {messages:?}");
     }
     assert!(right.instantiate(LIBRARY.fmi2Instantiate, None).is_null());
 }
@@ -70,9 +67,7 @@ fn run(api: &Api, number: u32) -> Vec<u64> {
 fn eight_threads_with_an_instance_each_get_the_bits_of_a_single_one() {
     let alone: Vec<_> = (0..8).map(|number| run(&LIBRARY, number)).collect();
     let together: Vec<_> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..8)
-            .map(|number| scope.spawn(move || run(&LIBRARY, number)))
-            .collect();
+        let threads: Vec<_> = (0..8).map(|number| scope.spawn(move || run(&LIBRARY, number))).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()
     });
     assert!(alone == together, "results depend on other threads");
@@ -94,10 +89,6 @@ fn thousands_of_instances_live_at_once() {
     let (pushed, left) = (force(&judges[1]), force(&judges[0]));
     assert_ne!(pushed, left);
     for (number, judge) in judges.iter().enumerate() {
-        assert_eq!(
-            &force(judge),
-            if number % 2 == 1 { &pushed } else { &left },
-            "instance {number}"
-        );
+        assert_eq!(&force(judge), if number % 2 == 1 { &pushed } else { &left }, "instance {number}");
     }
 }

@@ -133,11 +133,8 @@ impl Instance {
             return refused("stopTime", stop, format!("allowed is startTime = {start} s or more"));
         }
         let usable = tolerance.filter(|tolerance| tolerance.is_finite() && *tolerance > 0.0);
-        self.experiment = Experiment {
-            tolerance: usable.map(|tolerance| tolerance.min(LARGEST_TOLERANCE)),
-            start_time,
-            stop_time,
-        };
+        self.experiment =
+            Experiment { tolerance: usable.map(|tolerance| tolerance.min(LARGEST_TOLERANCE)), start_time, stop_time };
         self.time = start_time;
         match tolerance {
             Some(unusable) if usable.is_none() => Err(Failure::Tolerance(unusable)),
@@ -157,11 +154,7 @@ impl Instance {
             report::model(&self.logger, simulation.model());
         }
         let remarks = simulation.model().remarks();
-        if remarks.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::Remarks(remarks))
-        }
+        if remarks.is_empty() { Ok(()) } else { Err(Failure::Remarks(remarks)) }
     }
 
     /// Restores the state after instantiation. States that the importer has saved remain.
@@ -193,14 +186,7 @@ impl Instance {
 
     /// Restores a snapshot. If the model is the same, only the state of the simulation is replaced.
     pub(super) fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Failure> {
-        let Snapshot {
-            state,
-            ref scene,
-            inputs,
-            experiment,
-            ref simulation,
-            time,
-        } = *snapshot;
+        let Snapshot { state, ref scene, inputs, experiment, ref simulation, time } = *snapshot;
         let wanted = experiment.scene(scene);
         match (&mut self.simulation, simulation) {
             (Some(present), Some(SavedMotion { motion, initial }))
@@ -239,10 +225,8 @@ impl Instance {
         let (slack, off) = (rounding(point, size), (point - now).abs());
         let tolerated = slack.max(LARGEST_OFFSET * size);
         if !(end.is_finite() && off <= tolerated) {
-            let allowed = format!(
-                "the time of the instance is {} s, allowed difference {tolerated:.1e} s",
-                number(now)
-            );
+            let allowed =
+                format!("the time of the instance is {} s, allowed difference {tolerated:.1e} s", number(now));
             return refused("currentCommunicationPoint", point, allowed);
         }
         // What is more than rounding is time that passes, or has passed already: on to the importer's end of the step.
@@ -279,12 +263,7 @@ impl Instance {
             let error = simulation.force_error();
             self.told.of_error = error > ANNOUNCED * tolerance;
             if self.told.of_error {
-                return Err(Failure::Inaccurate {
-                    time: end,
-                    tolerance,
-                    error,
-                    modes: simulation.model().modes.len(),
-                });
+                return Err(Failure::Inaccurate { time: end, tolerance, error, modes: simulation.model().modes.len() });
             }
         }
         Ok(())

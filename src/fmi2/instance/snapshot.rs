@@ -53,11 +53,7 @@ pub(in crate::fmi2) struct SavedMotion {
 impl Snapshot {
     /// Whether an instance can reach these numbers. The scene itself is checked by the model.
     pub(in crate::fmi2) fn is_sound(&self) -> bool {
-        let Experiment {
-            tolerance,
-            start_time,
-            stop_time,
-        } = self.experiment;
+        let Experiment { tolerance, start_time, stop_time } = self.experiment;
         let simulation = self.simulation.as_ref();
         let simulates = simulation.is_some() || !matches!(self.state, State::StepComplete | State::Terminated);
         simulates

@@ -34,10 +34,7 @@ impl Instance {
         if self.state == State::InitializationMode {
             return self.prepare().map_err(Failure::Preview);
         }
-        self.simulation.as_deref().ok_or(Failure::NotComputed {
-            name: variable.name,
-            state: self.state,
-        })
+        self.simulation.as_deref().ok_or(Failure::NotComputed { name: variable.name, state: self.state })
     }
 
     pub(in crate::fmi2) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
@@ -113,11 +110,7 @@ impl Instance {
             _ if matches!(self.state, State::Instantiated | State::InitializationMode) => return Ok(()),
             _ => "a fixed parameter can be set until initialisation ends",
         };
-        Err(Failure::NotSettable {
-            name: variable.name,
-            state: self.state,
-            reason,
-        })
+        Err(Failure::NotSettable { name: variable.name, state: self.state, reason })
     }
 
     /// The variable of this type; all numbers of the plain component are Reals.
@@ -226,11 +219,7 @@ fn path_text<'a>(variable: &Variable, value: &'a CStr) -> Result<&'a str, SceneE
 const LONGEST_PATH: usize = 4096;
 
 pub(in crate::fmi2) fn find(kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
-    Variable::by_value_reference(reference).ok_or(Failure::UnknownReference {
-        kind,
-        reference,
-        owner: None,
-    })
+    Variable::by_value_reference(reference).ok_or(Failure::UnknownReference { kind, reference, owner: None })
 }
 
 /// Only derivatives of order 1 are supported.
@@ -240,16 +229,9 @@ fn first_order(variable: &Variable, order: i32) -> Result<(), Failure> {
 }
 
 fn no_derivative(variable: &Variable, role: &'static str) -> Failure {
-    Failure::NoDerivative {
-        name: variable.name,
-        role,
-    }
+    Failure::NoDerivative { name: variable.name, role }
 }
 
 fn wrong_type(kind: &'static str, variable: &Variable) -> Failure {
-    Failure::UnknownReference {
-        kind,
-        reference: variable.value_reference,
-        owner: Some(variable.name),
-    }
+    Failure::UnknownReference { kind, reference: variable.value_reference, owner: Some(variable.name) }
 }

@@ -48,17 +48,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
         for (loads, start) in room.loads.iter_mut().zip(&start) {
             *loads = [*start; S];
         }
-        Self {
-            model,
-            axial,
-            state,
-            step,
-            collocation,
-            free: free.clone(),
-            start,
-            room,
-            count: 0,
-        }
+        Self { model, axial, state, step, collocation, free: free.clone(), start, room, count: 0 }
     }
 
     /// Sets the free response to that with the loads of the motion under the forces of a trial; once that changes the loads no more,
@@ -151,10 +141,7 @@ fn set_loads<const S: usize, A: Arithmetic>(
     for (block, (loads, slopes)) in blocks.enumerate() {
         let mut sums = [[0.0; S]; LANES];
         for (row, q) in axial.geometric.iter().zip(motion) {
-            for (sum, entry) in sums
-                .iter_mut()
-                .zip(row.chunks_exact(LANES).nth(block).unwrap_or_default())
-            {
+            for (sum, entry) in sums.iter_mut().zip(row.chunks_exact(LANES).nth(block).unwrap_or_default()) {
                 add::<S, A>(sum, *entry, q);
             }
         }
@@ -182,11 +169,7 @@ fn force_of_change<const S: usize>(model: &Model, loads: &[Nodal<S>], next: &[No
         }
     }
     // Not `max`, which would hide NaN.
-    let root = |values: Nodal<S>| {
-        values
-            .iter()
-            .fold(0.0, |most, value| if most >= *value { most } else { *value })
-    };
+    let root = |values: Nodal<S>| values.iter().fold(0.0, |most, value| if most >= *value { most } else { *value });
     ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
 }
 

@@ -59,13 +59,7 @@ impl<const S: usize> Cache<S> {
             }
             None => Store::for_model(basis, model),
         };
-        Self {
-            sums: zeroed_vec(Store::<S>::sums(model)),
-            left,
-            collocation,
-            places,
-            piece: Piece::default(),
-        }
+        Self { sums: zeroed_vec(Store::<S>::sums(model)), left, collocation, places, piece: Piece::default() }
     }
 
     /// What it takes of memory for the model at most, bytes.

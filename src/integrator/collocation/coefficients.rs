@@ -110,10 +110,7 @@ pub struct ModeColumns<const S: usize> {
 }
 
 impl<const S: usize> NodalMotion<S> {
-    pub(crate) const ZERO: Self = Self {
-        d: [0.0; S],
-        rate: [0.0; S],
-    };
+    pub(crate) const ZERO: Self = Self { d: [0.0; S], rate: [0.0; S] };
 
     /// Adds the response to nodal values of a load.
     #[inline(always)]
@@ -184,10 +181,7 @@ pub(super) const fn responses_before(port: usize) -> usize {
 impl<'a, const S: usize> StepCoefficients<'a, S> {
     /// Free motion of a port, mode by mode, of the modes that it has a part in.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "there are coefficients for every port of the model"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "there are coefficients for every port of the model")]
     pub fn free_of_port(&self, port: usize) -> &'a [NodeRows<S>] {
         &self.rows[self.of_port[port].clone()]
     }
@@ -205,20 +199,14 @@ impl<'a, const S: usize> StepCoefficients<'a, S> {
 
     /// The response of a port to a base acceleration, which loads the modes with their `participation`.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "there are coefficients for every port of the model"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "there are coefficients for every port of the model")]
     pub fn acceleration(&self, port: usize) -> &'a Response<S> {
         &self.responses[responses_before(port)]
     }
 
     /// The response of one port to forces at another, or at itself.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "there are coefficients for every port of the model"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "there are coefficients for every port of the model")]
     pub fn response(&self, a: usize, b: usize) -> &'a Response<S> {
         &self.responses[responses_before(a.max(b)) + 1 + a.min(b)]
     }

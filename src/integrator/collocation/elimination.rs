@@ -1,9 +1,6 @@
 //! Gauss-Jordan elimination of the few equations of a step: a block of unknowns for each link, a value at each node.
 
-#![expect(
-    clippy::indexing_slicing,
-    reason = "every index runs over the fixed size of the arrays"
-)]
+#![expect(clippy::indexing_slicing, reason = "every index runs over the fixed size of the arrays")]
 
 use bytemuck::Zeroable;
 
@@ -34,29 +31,18 @@ impl<const S: usize, const L: usize> Equations<S, L> {
     /// Of `count` blocks, all zero.
     #[inline(always)]
     pub(super) fn new(count: usize) -> Self {
-        Self {
-            columns: [[[[0.0; S]; L]; S]; L],
-            exchanges: [[0; S]; L],
-            count,
-        }
+        Self { columns: [[[[0.0; S]; L]; S]; L], exchanges: [[0; S]; L], count }
     }
 
     /// Factorises by columns, so that inner loops run down columns; the solution for `right` takes its place. Rows are
     /// exchanged within a block only, and only for a small pivot, which occurs in violent steps. `None` if that is zero.
     #[inline(always)]
     pub(super) fn factorise<A: Arithmetic>(&mut self, right: &mut Stacked<S, L>) -> Option<()> {
-        let Self {
-            columns,
-            exchanges,
-            count,
-        } = self;
+        let Self { columns, exchanges, count } = self;
         for b in 0..in_use::<L>(*count) {
             for p in 0..S {
-                exchanges[b][p] = if columns[b][p][b][p].abs() < SMALL_PIVOT {
-                    exchange(columns, right, (b, p))?
-                } else {
-                    p
-                };
+                exchanges[b][p] =
+                    if columns[b][p][b][p].abs() < SMALL_PIVOT { exchange(columns, right, (b, p))? } else { p };
                 let multiplier = &mut columns[b][p];
                 let pivot = multiplier[b][p];
                 set_zero(&mut multiplier[b], p);

@@ -1,9 +1,6 @@
 //! The error estimate of a trial step.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "several arrays have a value for each unknown or node"
-)]
+#![expect(clippy::needless_range_loop, reason = "several arrays have a value for each unknown or node")]
 
 use crate::integrator::collocation::coefficients::{NodalMotion, StepCoefficients};
 use crate::integrator::collocation::elimination::in_use;
@@ -41,13 +38,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
     pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, trial: &mut Trial<S>) {
-        let Self {
-            linked,
-            step,
-            collocation,
-            free,
-            bent: _,
-        } = *self;
+        let Self { linked, step, collocation, free, bent: _ } = *self;
         let Linked { model, state, .. } = *linked;
         let defects = self.defects::<A>(trial);
         let mut own = [NodalMotion::ZERO; L];
@@ -101,24 +92,14 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let slow = 3.0 * squares / largest + kinked + missed;
         trial.slow_error = slow;
         let lasting = of_way + along * free.missed_mean + kept + slow * reaction;
-        trial.error = Estimate {
-            total: passing + lasting,
-            lasting,
-        };
+        trial.error = Estimate { total: passing + lasting, lasting };
         // With an axial force the other defects are in `inside` alone.
-        let of_base = if free.axial.is_some() {
-            0.0
-        } else {
-            model.inertia * base
-        };
+        let of_base = if free.axial.is_some() { 0.0 } else { model.inertia * base };
         let impulse = collocation.impulse * (sum + of_base) + missed;
         let slow = impulse * reaction + along * (collocation.impulse * base + free.missed_mean);
         // The contacts' dampers take back what a wrong velocity makes, not a wrong way.
         let share = (of_way + kept) / (of_way + kept + passing).max(f64::MIN_POSITIVE);
-        trial.inner_error = Estimate {
-            total: inside + slow,
-            lasting: share * inside + slow,
-        };
+        trial.inner_error = Estimate { total: inside + slow, lasting: share * inside + slow };
         trial.rounding = rounding;
     }
 
@@ -196,10 +177,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             (sign * d, sign * rate)
         };
         let (by_contact, by_own) = (at_end(unknown.link), at_end(follower));
-        (
-            end(&own.d) - by_contact.0 - share * by_own.0,
-            end(&own.rate) - by_contact.1 - share * by_own.1,
-        )
+        (end(&own.d) - by_contact.0 - share * by_own.0, end(&own.rate) - by_contact.1 - share * by_own.1)
     }
 }
 
@@ -219,11 +197,7 @@ pub(super) fn estimate_in_flight<const S: usize>(
             continue;
         };
         let rows = free.axial.as_ref().unwrap_or(&step.acceleration(link.port).defect);
-        let defect = if free.axial.is_some() {
-            1.0
-        } else {
-            free.start_defect.abs()
-        };
+        let defect = if free.axial.is_some() { 1.0 } else { free.start_defect.abs() };
         let most = |values: &Nodal<S>| greatest(values) * defect;
         let wrong = most(&rows.d) + law.damping() * most(&rows.rate) + missed_velocity * (model.memory + law.damping());
         let stiffness = law.tangent_stiffness(model.force_scale);
@@ -243,11 +217,7 @@ pub(crate) fn of_rounding<const S: usize>(model: &Model, state: &State, trial: &
     let links = model.links.iter().zip(&state.links).zip(&trial.links);
     let of_links = links.map(|(link, nodes)| {
         let (displacement, velocity) = magnitude(model, link, state);
-        let Tangent {
-            stiffness,
-            damping,
-            gain,
-        } = nodes.tangent;
+        let Tangent { stiffness, damping, gain } = nodes.tangent;
         // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
         let reaction = 1.0 + gain / (S * S) as f64;
         (stiffness.abs() * displacement + damping * velocity) / reaction

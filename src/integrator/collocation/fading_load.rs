@@ -36,18 +36,12 @@ fn moments(rate: f64, time: f64) -> [f64; MAX_SHAPES] {
         for m in (0..MAX_SHAPES).rev() {
             let above = moments.get(m + 2).copied();
             let half = 0.5 * (m + 2) as f64;
-            moments[m] = above.map_or_else(
-                || powers[m + 2] * summed(z, m),
-                |above| (powers[m + 2] - rate * above) / half,
-            );
+            moments[m] =
+                above.map_or_else(|| powers[m + 2] * summed(z, m), |above| (powers[m + 2] - rate * above) / half);
         }
     } else {
         moments[0] = -(-z).exp_m1() / rate;
-        moments[1] = if z < NEAR {
-            powers[3] * summed(z, 1)
-        } else {
-            descending(rate, time)
-        };
+        moments[1] = if z < NEAR { powers[3] * summed(z, 1) } else { descending(rate, time) };
         for m in 2..MAX_SHAPES {
             moments[m] = (powers[m] - 0.5 * m as f64 * moments[m - 2]) / rate;
         }

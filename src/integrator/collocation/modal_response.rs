@@ -67,29 +67,15 @@ pub struct ModeOverStep {
 impl ModeOverStep {
     /// For `omega_squared` >= 0 (1/s2), `damping` c >= 0 (1/s), and the step length `h` > 0 (s).
     pub fn new(omega_squared: f64, damping: f64, h: f64) -> Self {
-        let Roots {
-            slow: [slow],
-            fast: [fast],
-            ..
-        } = Roots::of(&[omega_squared], &[damping]);
-        Self {
-            omega_squared,
-            damping,
-            h,
-            fast: fast * h,
-            regime: Regime::of(slow * h, fast * h),
-        }
+        let Roots { slow: [slow], fast: [fast], .. } = Roots::of(&[omega_squared], &[damping]);
+        Self { omega_squared, damping, h, fast: fast * h, regime: Regime::of(slow * h, fast * h) }
     }
 
     /// The longest step by the root of time over which the response of a mode is known, s.
     pub fn longest_by_root(mode: &Mode) -> f64 {
         let fast = Self::new(mode.omega_squared, mode.damping, 1.0).fast;
         let is_overdamped = 0.25 * mode.damping * mode.damping > mode.omega_squared;
-        if is_overdamped {
-            FAST * fast / mode.omega_squared
-        } else {
-            SLOW / fast
-        }
+        if is_overdamped { FAST * fast / mode.omega_squared } else { SLOW / fast }
     }
 
     /// The response over a step with these nodes and shapes.
@@ -99,10 +85,7 @@ impl ModeOverStep {
         let decay = self.decay::<S, A>(nodes);
         let impulse = self.impulse::<S, A>(nodes, shapes, &combination, &decay);
         let start = |factors: &[f64; MAX_SHAPES]| {
-            let mut start = Row {
-                nodal: [0.0; S],
-                error: 0.0,
-            };
+            let mut start = Row { nodal: [0.0; S], error: 0.0 };
             for (factor, row) in factors.iter().zip(shapes.start_derivatives) {
                 add::<S, A>(&mut start.nodal, *factor, &row.nodal);
                 start.error = A::mul_add(*factor, row.error, start.error);
@@ -114,26 +97,14 @@ impl ModeOverStep {
             _ if shapes.variable == Variable::Root => [None; 2],
             Regime::Slow => [None; 2],
             Regime::Split(_, fast) => {
-                let fade = Pair {
-                    q: decay,
-                    v: scaled(&decay, fast),
-                };
+                let fade = Pair { q: decay, v: scaled(&decay, fast) };
                 [Some(Fading { start: start(q), fade }), None]
             }
             Regime::Fast => {
                 let mut from_q = impulse.v;
                 add::<S, A>(&mut from_q, self.damping * self.h, &impulse.q);
-                let fade = Pair {
-                    q: from_q,
-                    v: scaled(&impulse.q, -self.omega_squared * self.h * self.h),
-                };
-                [
-                    Some(Fading { start: start(q), fade }),
-                    Some(Fading {
-                        start: start(v),
-                        fade: impulse,
-                    }),
-                ]
+                let fade = Pair { q: from_q, v: scaled(&impulse.q, -self.omega_squared * self.h * self.h) };
+                [Some(Fading { start: start(q), fade }), Some(Fading { start: start(v), fade: impulse })]
             }
         };
         let fast = match self.regime {
@@ -141,20 +112,12 @@ impl ModeOverStep {
                 let share = 1.0 / (slow - fast);
                 Some(Fast {
                     convolved: convolved::<S, A>(-fast, nodes, shapes),
-                    factors: Pair {
-                        q: share,
-                        v: share * fast,
-                    },
+                    factors: Pair { q: share, v: share * fast },
                 })
             }
             _ => None,
         };
-        Response {
-            combination,
-            fading,
-            fast,
-            impulse,
-        }
+        Response { combination, fading, fast, impulse }
     }
 
     #[inline(always)]
@@ -172,11 +135,7 @@ impl ModeOverStep {
     fn set_integrals<const S: usize, A: Arithmetic>(&self, shapes: &Shapes<S>, factors: &mut Combination) {
         // At the last node the powers are 1 / n!.
         let sizes = shapes.powers.iter().filter_map(|power| power.last());
-        let Combination {
-            integrals: Pair { q, v },
-            terms,
-            ..
-        } = factors;
+        let Combination { integrals: Pair { q, v }, terms, .. } = factors;
         let mut entries = q.iter_mut().zip(v);
         match self.regime {
             Regime::Slow => {
@@ -315,9 +274,7 @@ mod tests {
         let scale = w.sqrt().max(c);
         // By the root of time, by which all loads are smooth.
         let end = x.sqrt();
-        let panels = (1..20_000)
-            .find(|panels| f64::from(*panels) >= 2.0 * scale * h * x)
-            .unwrap();
+        let panels = (1..20_000).find(|panels| f64::from(*panels) >= 2.0 * scale * h * x).unwrap();
         let width = end / f64::from(panels);
         let (mut q, mut v) = (0.0, 0.0);
         for panel in 0..panels {
@@ -333,10 +290,7 @@ mod tests {
         (q, v)
     }
 
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "every index runs over the fixed size of the arrays")]
     fn agree<const S: usize>(collocation: &Collocation<S>) {
         let variable = collocation.variable;
         let nodes = collocation.nodes;
@@ -353,11 +307,7 @@ mod tests {
             for ratio in [0.0, 0.01, 0.9, 1.0, 1.000_001, 1.2, 3.0, 30.0] {
                 let (omega, h) = (1e4, omega_h / 1e4);
                 let (w, c) = (omega * omega, 2.0 * ratio * omega);
-                let mode = Mode {
-                    omega_squared: w,
-                    damping: c,
-                    ..Mode::default()
-                };
+                let mode = Mode { omega_squared: w, damping: c, ..Mode::default() };
                 if variable == Variable::Root && h > ModeOverStep::longest_by_root(&mode) {
                     continue;
                 }
@@ -400,14 +350,8 @@ mod tests {
                         }
                     }
                     let free = FreeMotion::new(w, c, nodes[i] * h);
-                    let errors = (
-                        response.impulse.q[i] - free.q_from_v / h,
-                        response.impulse.v[i] - free.v_from_v,
-                    );
-                    assert!(
-                        errors.0.abs().max(errors.1.abs()) < 1e-14,
-                        "{omega_h} {ratio} {errors:?}"
-                    );
+                    let errors = (response.impulse.q[i] - free.q_from_v / h, response.impulse.v[i] - free.v_from_v);
+                    assert!(errors.0.abs().max(errors.1.abs()) < 1e-14, "{omega_h} {ratio} {errors:?}");
                 }
             }
         }

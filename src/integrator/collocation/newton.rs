@@ -10,10 +10,7 @@
 //! and so is its velocity. While a contact slips its friction force is a share of the contact force: each contact force then
 //! moves the modes with its friction force, and the friction forces are no unknowns. While it sticks they are.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "several arrays have a value for each unknown or node"
-)]
+#![expect(clippy::needless_range_loop, reason = "several arrays have a value for each unknown or node")]
 
 use bytemuck::Zeroable;
 
@@ -54,10 +51,7 @@ impl Unknowns {
         let mut unknowns = Self::default();
         let friction = model.friction();
         // On its core the armature has no gap, and the magnet a constant force.
-        let seated = model
-            .roles
-            .core
-            .is_some_and(|core| state.links.get(core).is_some_and(|at| at.closed));
+        let seated = model.roles.core.is_some_and(|core| state.links.get(core).is_some_and(|at| at.closed));
         for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
             let Some((rubbing, friction)) = friction.filter(|_| index == CONTACT) else {
                 if at.closed && link.contact().is_some() || matches!(link.law, LinkLaw::Magnet(_)) && !seated {
@@ -167,10 +161,7 @@ pub(crate) struct Linked<'a, const S: usize, const L: usize> {
 impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     /// Joins the responses of ports to those of links.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "links and ports of the model, and unknowns in use"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "links and ports of the model, and unknowns in use")]
     pub(crate) fn new<A: Arithmetic>(
         (model, state): (&'a Model, &'a State),
         step: StepCoefficients<'a, S>,
@@ -180,12 +171,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         let first = unknowns.list[0];
         let plain = unknowns.count == 1 && first.follower.is_none();
         let port = model.links[first.link].port;
-        let mut linked = Self {
-            model,
-            state,
-            unknowns,
-            responses: [[step.response(port, port); L]; L],
-        };
+        let mut linked = Self { model, state, unknowns, responses: [[step.response(port, port); L]; L] };
         if plain {
             return linked;
         }
@@ -241,11 +227,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
     fn residuals(&self, forces: &Stacked<S, L>, motions: &[NodalMotion<S>; L]) -> (Stacked<S, L>, Laws<S, L>) {
         let mut residuals = *forces;
-        let mut laws = Laws {
-            stiffness: [[0.0; S]; L],
-            damping: [[0.0; S]; L],
-            coupling: [[0.0; S]; L],
-        };
+        let mut laws = Laws { stiffness: [[0.0; S]; L], damping: [[0.0; S]; L], coupling: [[0.0; S]; L] };
         let [contact, ..] = self.model.links.as_slice() else {
             return (residuals, laws);
         };
@@ -313,13 +295,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                     + greatest(&laws.damping[a]) * greatest(&free[a].rate);
             }
             if factorised && wrong <= newton.max(MOTION_ROUNDING * rounding) {
-                return Some(Solution {
-                    forces,
-                    motions,
-                    iterations,
-                    laws,
-                    factors,
-                });
+                return Some(Solution { forces, motions, iterations, laws, factors });
             }
             if L > 1 && factorised && wrong <= STALE * before {
                 factors.solve::<A>(&mut residuals);
@@ -349,10 +325,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                 for a in 0..in_use::<L>(self.unknowns.count) {
                     equations.columns[b][j][a] = laws.change::<A>(a, |of| {
                         let Columns { displacement, velocity } = &self.responses[of][b].columns;
-                        NodalMotion {
-                            d: displacement[j],
-                            rate: velocity[j],
-                        }
+                        NodalMotion { d: displacement[j], rate: velocity[j] }
                     });
                 }
                 add::<S, Separate>(&mut equations.columns[b][j][b], 1.0, unit(j));
@@ -388,16 +361,9 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     pub(crate) fn tangent(&self, collocation: &Collocation<S>, solution: &Solution<'_, S, L>, a: usize) -> Tangent {
         let index = self.unknowns.get(a).link;
         let link = &self.model.links[index];
-        let (mut stiffness, mut damping) = (
-            greatest(&solution.laws.stiffness[a]),
-            greatest(&solution.laws.damping[a]),
-        );
+        let (mut stiffness, mut damping) = (greatest(&solution.laws.stiffness[a]), greatest(&solution.laws.damping[a]));
         if collocation.variable == Variable::Root {
-            let Laws {
-                stiffness: of_way,
-                damping: of_rate,
-                ..
-            } = &solution.laws;
+            let Laws { stiffness: of_way, damping: of_rate, .. } = &solution.laws;
             (stiffness, damping) = (collocation.mean(&of_way[a]).abs(), collocation.mean(&of_rate[a]));
         } else if let Some(law) = link.contact() {
             let start = law.stiffness(link.approach + self.state.links[index].approach);
@@ -408,11 +374,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         if let LinkLaw::Magnet(_) = link.law {
             stiffness = -stiffness;
         }
-        Tangent {
-            stiffness,
-            damping,
-            gain,
-        }
+        Tangent { stiffness, damping, gain }
     }
 }
 

@@ -56,13 +56,7 @@ impl<const S: usize> Whole<'_, S> {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "ports of the model, and loads in use")]
     fn compute<const LOADS: usize, A: Arithmetic>(&self, at: f64, ends: &mut ModeStates) {
-        let Self {
-            model,
-            state,
-            collocation,
-            trial,
-            ..
-        } = *self;
+        let Self { model, state, collocation, trial, .. } = *self;
         let shapes = &collocation.shapes;
         let mut rows = [[0.0; S]; S];
         for (row, node) in rows.iter_mut().zip(&collocation.nodes) {
@@ -120,12 +114,7 @@ impl<const S: usize> Whole<'_, S> {
                     *polynomial = load_on::<S, A>(shapes, &rows, own.get(i).unwrap_or(&[0.0; S]));
                 }
             }
-            let loads = Loads {
-                shapes,
-                length: at,
-                polynomials: &polynomials[..count],
-                parts: &parts[..count],
-            };
+            let loads = Loads { shapes, length: at, polynomials: &polynomials[..count], parts: &parts[..count] };
             loads.moved::<A>(&of_lanes, &starts, ends);
             for (end, lean) in ends.iter_mut().zip(&leans) {
                 end.q += lean;
@@ -136,10 +125,7 @@ impl<const S: usize> Whole<'_, S> {
     /// A link `at` seconds after the start, where the modes are these.
     pub(crate) fn link(&self, index: usize, at: f64, modes: &ModeStates) -> Instant {
         let (model, state) = (self.model, self.state);
-        let Some((link, port)) = model
-            .links
-            .get(index)
-            .and_then(|link| Some((link, model.ports.get(link.port)?)))
+        let Some((link, port)) = model.links.get(index).and_then(|link| Some((link, model.ports.get(link.port)?)))
         else {
             return Instant::default();
         };
@@ -205,10 +191,7 @@ pub(crate) fn shorten<const S: usize>(
         }
     }
     if let Some((rubbing, _)) = model.friction() {
-        let start = state
-            .links
-            .get(rubbing)
-            .map_or(0.0, |along| -along.approach - state.slip.way - trial.slip.fading);
+        let start = state.links.get(rubbing).map_or(0.0, |along| -along.approach - state.slip.way - trial.slip.fading);
         trial.slip.deflections = with_start(start, &trial.slip.deflections);
         trial.slip.rates = nodal(&trial.slip.rates);
     }
@@ -232,13 +215,9 @@ mod tests {
     #[test]
     #[expect(clippy::indexing_slicing, reason = "a spring has modes")]
     fn a_look_at_the_end_is_the_end_of_the_step() {
-        for (lifted, second, modes) in [
-            (0.0, false, 0),
-            (5e-6, false, 0),
-            (5e-6, true, 0),
-            (0.0, false, 6),
-            (5e-6, false, 6),
-        ] {
+        for (lifted, second, modes) in
+            [(0.0, false, 0), (5e-6, false, 0), (5e-6, true, 0), (0.0, false, 6), (5e-6, false, 6)]
+        {
             for damping in [0.0, 0.01, 0.3, 3.0] {
                 let mut scene = Scene::default();
                 scene.effects.second_contact = second;

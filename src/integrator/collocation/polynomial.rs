@@ -159,10 +159,7 @@ mod tests {
                 let values = collocation.nodes.map(|x| x.powi(i32::try_from(power).unwrap()));
                 let exact = 1.0 / (power as f64 + 1.0);
                 // Roundings of S terms.
-                assert!(
-                    (collocation.mean(&values) - exact).abs() < 1e-15 * S as f64,
-                    "{S} {power}"
-                );
+                assert!((collocation.mean(&values) - exact).abs() < 1e-15 * S as f64, "{S} {power}");
             }
         }
         check(&SHORT_BY_TIME);

@@ -87,18 +87,12 @@ pub struct Load {
 
 impl Load {
     /// No load.
-    pub(super) const ZERO: Self = Self {
-        integrals: [0.0; TERMS],
-        derivatives: [[0.0; 2]; MAX_SHAPES],
-    };
+    pub(super) const ZERO: Self = Self { integrals: [0.0; TERMS], derivatives: [[0.0; 2]; MAX_SHAPES] };
 }
 
 impl<const S: usize> Table<S> {
     /// All zero.
-    pub const ZERO: Self = Self {
-        nodal: [[0.0; S]; S],
-        error: [0.0; S],
-    };
+    pub const ZERO: Self = Self { nodal: [[0.0; S]; S], error: [0.0; S] };
 
     /// Adds `factor` times another table.
     #[inline(always)]

@@ -78,10 +78,7 @@ impl<const S: usize> Loads<'_, S> {
                 Regime::Split(..) => split[i] = true,
             }
         }
-        let mut response = Pair {
-            q: [0.0; LANES],
-            v: [0.0; LANES],
-        };
+        let mut response = Pair { q: [0.0; LANES], v: [0.0; LANES] };
         if slow.contains(&true) {
             take(&mut response, slow, &self.of_slow::<A>(group, slow));
         }
@@ -108,20 +105,14 @@ impl<const S: usize> Loads<'_, S> {
     }
 
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "derivatives that there are, and a value for each mode"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "derivatives that there are, and a value for each mode")]
     fn of_fast<A: Arithmetic>(&self, group: &Group) -> Pair<Lanes> {
         let inverse = group.squared.map(f64::recip);
         let mut over_squared = group.damping;
         for (damping, inverse) in over_squared.iter_mut().zip(&inverse) {
             *damping *= -inverse;
         }
-        let mut ends = [Pair {
-            q: [0.0; LANES],
-            v: [0.0; LANES],
-        }; 2];
+        let mut ends = [Pair { q: [0.0; LANES], v: [0.0; LANES] }; 2];
         for m in (0..=S).rev() {
             for (end, Pair { q, v }) in ends.iter_mut().enumerate() {
                 let mut next = self.sum::<A>(|load| load.derivatives[m][end]);
@@ -132,12 +123,7 @@ impl<const S: usize> Loads<'_, S> {
         }
         let [start, mut end] = ends;
         for i in 0..LANES {
-            let FreeMotion {
-                q_from_q,
-                q_from_v,
-                v_from_q,
-                v_from_v,
-            } = group.free[i];
+            let FreeMotion { q_from_q, q_from_v, v_from_q, v_from_v } = group.free[i];
             let h = self.length;
             end.q[i] -= q_from_q * start.q[i] + q_from_v / h * start.v[i];
             end.v[i] -= v_from_q * h * start.q[i] + v_from_v * start.v[i];
@@ -148,10 +134,7 @@ impl<const S: usize> Loads<'_, S> {
     }
 
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "integrals and derivatives that there are, and a value for each mode"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "integrals and derivatives that there are, and a value for each mode")]
     fn of_split<A: Arithmetic>(&self, group: &Group, these: [bool; LANES]) -> Pair<Lanes> {
         let (slow, inverse) = (group.slow.map(|root| -root), group.fast.map(|root| -1.0 / root));
         let mut by_slow = [0.0; LANES];
@@ -231,22 +214,14 @@ mod tests {
     }
 
     #[test]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "every index runs over the fixed size of the arrays"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "every index runs over the fixed size of the arrays")]
     fn they_move_as_each_does_alone() {
         let h = 1e-4;
         let collocation = &LONG_BY_TIME;
         let values: [[f64; LONG]; 2] = [1.0, 3.0].map(|k| std::array::from_fn(|j| (k * (1.0 + j as f64)).sin()));
         let both = values.map(|values| collocation.shapes.load::<Separate>(&values));
         let factors = [[1.0, -2.0, 0.5, 3.0], [0.3, 1.0, -1.0, 2.0]];
-        let loads = Loads {
-            shapes: &collocation.shapes,
-            length: h,
-            polynomials: &both,
-            parts: &factors,
-        };
+        let loads = Loads { shapes: &collocation.shapes, length: h, polynomials: &both, parts: &factors };
         for roots in [
             [(0.001, 0.0), (0.3, 0.1), (2.0, 1.0), (3.0, 0.9)],
             [(6.8, 0.0), (25.0, 0.3), (9.0, 1.0), (40.0, 1.01)],

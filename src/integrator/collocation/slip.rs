@@ -35,11 +35,7 @@ pub(super) fn following<const S: usize, A: Arithmetic>(damping: f64, h: f64, sha
     for (j, (column, right)) in matrix.iter_mut().zip(&mut right).enumerate() {
         *column = scaled(column, factor);
         add::<S, A>(column, own, unit(j));
-        *right = if long {
-            scaled(right, 1.0 / h)
-        } else {
-            scaled(unit(j), scale)
-        };
+        *right = if long { scaled(right, 1.0 / h) } else { scaled(unit(j), scale) };
     }
     solve::<S, S, A>(matrix, right).unwrap_or([[0.0; S]; S])
 }
@@ -53,11 +49,7 @@ impl<const S: usize> SlipNodes<S> {
     /// What is left of the fading part `at` seconds after the start, m, at the damping time of the contact, s.
     pub(crate) fn left(&self, at: f64, damping: f64) -> f64 {
         // There is none in most steps.
-        if self.fading == 0.0 {
-            0.0
-        } else {
-            self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp()
-        }
+        if self.fading == 0.0 { 0.0 } else { self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp() }
     }
 
     /// Energy dissipated since the start of a step of this length (s), J, by a friction force (N, at its start and nodes); with what is
@@ -93,11 +85,7 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
 ) {
     let Trial { links, slip, .. } = trial;
     let (contact, along) = (&links[CONTACT], &links[rubbing]);
-    *slip = SlipNodes {
-        deflections: [0.0; S],
-        rates: [0.0; S],
-        fading: 0.0,
-    };
+    *slip = SlipNodes { deflections: [0.0; S], rates: [0.0; S], fading: 0.0 };
     let start = -state.links[rubbing].approach - state.slip.way;
     let (true, Some(law)) = (state.links[CONTACT].closed, model.law.power()) else {
         return;
@@ -142,11 +130,7 @@ fn tends<const S: usize, A: Arithmetic>(
     if let Some(integrals) = collocation.shapes.integrals.first() {
         add_columns::<S, A>(&mut deflections, &integrals.nodal, &scaled(&rates, length));
     }
-    SlipNodes {
-        deflections,
-        rates,
-        fading,
-    }
+    SlipNodes { deflections, rates, fading }
 }
 
 #[cfg(test)]
@@ -197,14 +181,10 @@ mod tests {
             follows(&SHORT_BY_TIME, length, |_| 1e-9);
         }
         for length in [7.9e-6, 3.9e-6, 1e-6, 1e-7, 1e-9] {
-            follows(&LONG_BY_TIME, length, |lag| {
-                1e-2 * (0.125 / lag).powi(8) + 1e-15 * (1.0 + lag * lag)
-            });
+            follows(&LONG_BY_TIME, length, |lag| 1e-2 * (0.125 / lag).powi(8) + 1e-15 * (1.0 + lag * lag));
         }
         for length in [3.9e-6, 1e-6, 1e-7, 1e-9] {
-            follows(&SHORT_BY_TIME, length, |lag| {
-                (0.25 / lag).powi(4) + 1e-15 * (1.0 + lag * lag)
-            });
+            follows(&SHORT_BY_TIME, length, |lag| (0.25 / lag).powi(4) + 1e-15 * (1.0 + lag * lag));
         }
     }
 }

@@ -32,14 +32,7 @@ pub fn compute<const S: usize>(
         Source::Laws(_) => Unknowns::of(model, state),
         Source::Given => Unknowns::default(),
     };
-    let step = Step {
-        model,
-        state,
-        drive,
-        prepared,
-        source,
-        unknowns,
-    };
+    let step = Step { model, state, drive, prepared, source, unknowns };
     match unknowns.count {
         0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch, &mut Equations::new(1))),
         2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch, &mut Equations::new(2))),
@@ -85,9 +78,7 @@ impl<const S: usize> Step<'_, S> {
     ) -> Option<()> {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, .. } = self.prepared;
-        let Scratch {
-            free, joined, axial, ..
-        } = scratch;
+        let Scratch { free, joined, axial, .. } = scratch;
         self.set_free_response::<A>(trial, free);
         self.guess::<A>(trial);
         let linked = Linked::<S, L>::new::<A>((model, state), step, &self.unknowns, joined);
@@ -130,13 +121,8 @@ impl<const S: usize> Step<'_, S> {
     ) {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, .. } = self.prepared;
-        let judged = Judged {
-            linked,
-            step,
-            collocation,
-            free,
-            bent: self.drive.has_just_changed(state.time, step.length),
-        };
+        let judged =
+            Judged { linked, step, collocation, free, bent: self.drive.has_just_changed(state.time, step.length) };
         judged.estimate::<A>(solution, trial);
         if !state.is_closed() {
             // A magnet alone: what flies is judged as well.
@@ -164,11 +150,7 @@ impl<const S: usize> Step<'_, S> {
     #[expect(clippy::indexing_slicing, reason = "ports and links of the model")]
     fn set_free_response<A: Arithmetic>(&self, trial: &mut Trial<S>, free: &mut FreeResponse<S>) {
         let Self { model, state, .. } = *self;
-        let Prepared {
-            step,
-            collocation,
-            generated,
-        } = self.prepared;
+        let Prepared { step, collocation, generated } = self.prepared;
         let driven = self.drive.acceleration(state.time);
         let accelerations = &mut trial.accelerations;
         *accelerations = generated.nodes;
@@ -177,9 +159,7 @@ impl<const S: usize> Step<'_, S> {
             *acceleration += driven;
         }
         let start_defect = driven + generated.start - dot::<S, A>(accelerations, &collocation.at_start);
-        let largest = accelerations
-            .iter()
-            .fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
+        let largest = accelerations.iter().fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
 
         let pushed = scaled(accelerations, -1.0);
         for (p, (port, motion)) in model.ports.iter().zip(&mut free.ports).enumerate() {
@@ -292,10 +272,7 @@ impl<const S: usize> Step<'_, S> {
         let Prepared { step, collocation, .. } = self.prepared;
         let link = &self.model.links[index];
         let speed = link.offset(&self.drive.velocities);
-        let mut motion = NodalMotion {
-            d: [link.offset(&self.state.displacements); S],
-            rate: [speed; S],
-        };
+        let mut motion = NodalMotion { d: [link.offset(&self.state.displacements); S], rate: [speed; S] };
         add::<S, A>(&mut motion.d, speed * step.length, &collocation.nodes);
         add::<S, A>(&mut motion.d, -link.sense, &port.d);
         add::<S, A>(&mut motion.rate, -link.sense, &port.rate);
@@ -305,10 +282,7 @@ impl<const S: usize> Step<'_, S> {
     /// Sets the approaches of all links at the nodes, from the motion of the ports without the forces that were unknown, and
     /// that of the links whose forces were.
     #[inline(always)]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "links and ports of the model, and unknowns in use"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "links and ports of the model, and unknowns in use")]
     fn set_motion<A: Arithmetic>(
         &self,
         free: &[NodalMotion<S>; MAX_PORTS],
@@ -363,10 +337,7 @@ impl<const S: usize> Step<'_, S> {
         }
         let pushed = scaled(&trial.accelerations, -1.0);
         let mut ends = [([0.0; LANES], [0.0; LANES]); MAX_PORTS];
-        let (starts, modes) = (
-            state.modes.as_chunks::<LANES>().0,
-            trial.modes.as_chunks_mut::<LANES>().0,
-        );
+        let (starts, modes) = (state.modes.as_chunks::<LANES>().0, trial.modes.as_chunks_mut::<LANES>().0);
         for (group, (rows, (starts, modes))) in step.end.iter().zip(starts.iter().zip(modes)).enumerate() {
             let mut end = LaneEnd::free::<S, A>(rows, starts);
             end.add::<S, A>(rows, lanes(&model.participations, group), &pushed);

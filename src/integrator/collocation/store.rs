@@ -180,10 +180,7 @@ impl<const S: usize> Store<S> {
         recurring: bool,
         collocation: &Collocation<S>,
     ) -> Option<StepCoefficients<'_, S>> {
-        let slot = self
-            .of_slot
-            .get(slot(length, collocation.variable))
-            .filter(|_| recurring);
+        let slot = self.of_slot.get(slot(length, collocation.variable)).filter(|_| recurring);
         let place = slot.map_or(0, |place| usize::from(*place));
         self.has(place, length, collocation).then(|| self.view(place))
     }
@@ -243,11 +240,7 @@ impl<const S: usize> Store<S> {
         self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
         self.following.resize(places * sizes.following, [0.0; S]);
         self.ends.resize_with(places * sizes.ends, EndGroup::zeroed);
-        self.places.push(Place {
-            length: 0.0,
-            collocation,
-            turns: Turns::NONE,
-        });
+        self.places.push(Place { length: 0.0, collocation, turns: Turns::NONE });
         place
     }
 
@@ -347,11 +340,7 @@ impl<const S: usize> Modes<'_, S> {
             for (p, (port, range)) in model.ports.iter().zip(self.of_port).enumerate() {
                 let b = model.displacement(p, i);
                 for (q, sum) in of_port.by_ref().take(p + 2).enumerate() {
-                    let weight = b * if q == 0 {
-                        mode.participation
-                    } else {
-                        model.displacement(q - 1, i)
-                    };
+                    let weight = b * if q == 0 { mode.participation } else { model.displacement(q - 1, i) };
                     if weight != 0.0 {
                         sum.add::<A>(weight, &response);
                     }

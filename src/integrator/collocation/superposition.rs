@@ -30,15 +30,9 @@ pub(crate) struct Combination {
 
 impl Combination {
     pub(crate) const ZERO: Self = Self {
-        integrals: Pair {
-            q: [0.0; TERMS],
-            v: [0.0; TERMS],
-        },
+        integrals: Pair { q: [0.0; TERMS], v: [0.0; TERMS] },
         terms: 0,
-        derivatives: Pair {
-            q: [0.0; MAX_SHAPES],
-            v: [0.0; MAX_SHAPES],
-        },
+        derivatives: Pair { q: [0.0; MAX_SHAPES], v: [0.0; MAX_SHAPES] },
     };
 }
 
@@ -84,11 +78,7 @@ impl<const S: usize> Response<S> {
     #[inline(always)]
     pub fn at_end<A: Arithmetic>(&self, shapes: &Shapes<S>) -> Pair<Nodal<S>> {
         let (mut q, mut v) = ([0.0; S], [0.0; S]);
-        let Combination {
-            integrals,
-            terms,
-            derivatives,
-        } = &self.combination;
+        let Combination { integrals, terms, derivatives } = &self.combination;
         let factors = integrals.q.iter().zip(&integrals.v).take(*terms);
         for ((for_q, for_v), values) in factors.zip(&shapes.end_integrals) {
             add::<S, A>(&mut q, *for_q, values);
@@ -117,11 +107,7 @@ impl<const S: usize> Sum<S> {
     /// Adds `weight` times a response.
     #[inline(always)]
     pub fn add<A: Arithmetic>(&mut self, weight: f64, response: &Response<S>) {
-        let Combination {
-            integrals,
-            terms,
-            derivatives,
-        } = &mut self.combination;
+        let Combination { integrals, terms, derivatives } = &mut self.combination;
         let from = &response.combination;
         *terms = from.terms.max(*terms);
         let add_up = |to: &mut [f64], from: &[f64], count: usize| {
@@ -137,13 +123,8 @@ impl<const S: usize> Sum<S> {
         }
         for fading in response.fading.iter().flatten() {
             let Pair { q, v } = &fading.fade;
-            for ((to_q, to_v), start) in self
-                .faded
-                .q
-                .nodal
-                .iter_mut()
-                .zip(&mut self.faded.v.nodal)
-                .zip(&fading.start.nodal)
+            for ((to_q, to_v), start) in
+                self.faded.q.nodal.iter_mut().zip(&mut self.faded.v.nodal).zip(&fading.start.nodal)
             {
                 add::<S, A>(to_q, weight * start, q);
                 add::<S, A>(to_v, weight * start, v);
@@ -163,10 +144,7 @@ impl<const S: usize> Sum<S> {
     pub fn at_nodes<A: Arithmetic>(&self, shapes: &Shapes<S>) -> Pair<Table<S>> {
         let (mut q, mut v) = (Table::ZERO, Table::ZERO);
         for shape in 0..S {
-            Pair {
-                q: q.nodal[shape],
-                v: v.nodal[shape],
-            } = self.of_shape::<A>(shapes, |table| &table.nodal[shape]);
+            Pair { q: q.nodal[shape], v: v.nodal[shape] } = self.of_shape::<A>(shapes, |table| &table.nodal[shape]);
         }
         Pair { q: q.error, v: v.error } = self.of_shape::<A>(shapes, |table| &table.error);
         Pair { q, v }
@@ -176,10 +154,7 @@ impl<const S: usize> Sum<S> {
     #[inline(always)]
     fn of_shape<A: Arithmetic>(&self, shapes: &Shapes<S>, column: impl Fn(&Table<S>) -> &Nodal<S>) -> Pair<Nodal<S>> {
         let Self { combination, faded } = self;
-        let mut sum = Pair {
-            q: [0.0; S],
-            v: [0.0; S],
-        };
+        let mut sum = Pair { q: [0.0; S], v: [0.0; S] };
         let Pair { q, v } = &combination.integrals;
         let factors = q.iter().zip(v).take(combination.terms);
         for ((for_q, for_v), table) in factors.zip(&shapes.integrals) {

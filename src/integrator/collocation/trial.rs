@@ -90,11 +90,7 @@ impl<const S: usize> Scratch<S> {
             free: Box::default(),
             joined: Joined::new(model),
             many: (model.links.len() > FEW).then(zeroed_box),
-            axial: AxialLoads {
-                loads: on_modes(),
-                motion: on_modes(),
-                next: on_modes(),
-            },
+            axial: AxialLoads { loads: on_modes(), motion: on_modes(), next: on_modes() },
         }
     }
 }
@@ -114,12 +110,7 @@ pub(crate) struct FreeResponse<const S: usize> {
 
 impl<const S: usize> Default for FreeResponse<S> {
     fn default() -> Self {
-        Self {
-            ports: [NodalMotion::ZERO; MAX_PORTS],
-            start_defect: 0.0,
-            missed_mean: 0.0,
-            axial: None,
-        }
+        Self { ports: [NodalMotion::ZERO; MAX_PORTS], start_defect: 0.0, missed_mean: 0.0, axial: None }
     }
 }
 

@@ -72,19 +72,14 @@ where
     let in_half = [first, &LONG_BY_TIME];
     let in_halves = |values: &Nodal<S>| {
         [(0.0, in_half[0]), (0.5, in_half[1])].map(|(start, half)| {
-            half.nodes
-                .map(|node| polynomial.interpolate(values, variable.place(start + 0.5 * node)))
+            half.nodes.map(|node| polynomial.interpolate(values, variable.place(start + 0.5 * node)))
         })
     };
     let halves: [[Nodal<LONG>; 2]; MAX_LINKS] = trial.links.map(|nodes| in_halves(&nodes.forces));
     let mut at: State = *state;
     let mut work = 0.0;
     for (half_step, collocation) in in_half.into_iter().enumerate() {
-        let Workspace {
-            long: Room { cache, scratch, .. },
-            half: motion,
-            ..
-        } = &mut *workspace;
+        let Workspace { long: Room { cache, scratch, .. }, half: motion, .. } = &mut *workspace;
         for (nodes, halves) in motion.links.iter_mut().zip(&halves) {
             nodes.forces = *halves.get(half_step)?;
         }
@@ -106,11 +101,7 @@ where
     // Of a closed contact the work; without contact force, all elastic energy that leaves the contact is dissipated.
     let stored = |index: usize| {
         let links = [state, &at].map(|state| state.links.get(index).copied().unwrap_or_default());
-        if links[0].closed {
-            links[0].approach
-        } else {
-            links[1].approach
-        }
+        if links[0].closed { links[0].approach } else { links[1].approach }
     };
     Some(model.energy_at(&at.modes, state.coil, stored) + work)
 }
@@ -178,18 +169,9 @@ mod tests {
         scene.solver.modes = i32::try_from(MODES).unwrap();
         let model = Model::new(&scene, 0.0).unwrap();
         let mut state = model.initial_state(0.0);
-        let inputs = Inputs {
-            base_acceleration: 20.0,
-            base_acceleration_rate: 1e5,
-            ..Inputs::default()
-        };
+        let inputs = Inputs { base_acceleration: 20.0, base_acceleration_rate: 1e5, ..Inputs::default() };
         let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0, 0.0]);
-        let steps = Steps::Exactly {
-            time: 0.0,
-            size: 4e-4,
-            recurs: true,
-            driven: false,
-        };
+        let steps = Steps::Exactly { time: 0.0, size: 4e-4, recurs: true, driven: false };
         let mut workspace = Workspace::new(&model);
         advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
         state.energy_balance = 0.0;
@@ -286,10 +268,7 @@ mod tests {
             let sum = summed(&model, &start, &end, drive, length, (&trial, &SHORT_BY_TIME));
             // The defect at the start excites oscillations of about a microsecond, which the nodes of the half steps do
             // not resolve.
-            assert!(
-                (entered - sum).abs() < 0.1 * sum.abs(),
-                "{length} s: entered {entered:e} J, summed {sum:e} J"
-            );
+            assert!((entered - sum).abs() < 0.1 * sum.abs(), "{length} s: entered {entered:e} J, summed {sum:e} J");
         }
     }
 
@@ -302,10 +281,7 @@ mod tests {
             trial.links[CONTACT].forces = trial.links[CONTACT].forces.map(|force| force + wrong);
         });
         let sum = summed(&model, &start, &end, drive, 6e-5, (&trial, &LONG_BY_TIME));
-        assert!(
-            (entered - sum).abs() < 1e-3 * sum.abs(),
-            "entered {entered:e} J, summed {sum:e} J"
-        );
+        assert!((entered - sum).abs() < 1e-3 * sum.abs(), "entered {entered:e} J, summed {sum:e} J");
         // More than the work of the wrong force itself: the changed motion meets other forces of the law.
         let worth = wrong * (end.links[CONTACT].approach - start.links[CONTACT].approach).abs();
         assert!(entered.abs() > worth, "entered {entered:e} J, worth {worth:e} J");
@@ -322,9 +298,6 @@ mod tests {
             first.v *= 1.0 + 1e-6;
             made = 0.5 * (first.v * first.v - expected * expected);
         });
-        assert!(
-            (entered + made).abs() < 1e-3 * made,
-            "entered {entered:e} J, made {made:e} J"
-        );
+        assert!((entered + made).abs() < 1e-3 * made, "entered {entered:e} J, made {made:e} J");
     }
 }

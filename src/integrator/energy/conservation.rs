@@ -29,15 +29,7 @@ pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
 
 /// Energy error of a trial (gain beyond the work done), and its rounding, J.
 pub(crate) fn surplus<const S: usize>(whole: Whole<S>) -> (f64, f64) {
-    let Whole {
-        model,
-        state,
-        drive,
-        collocation,
-        trial,
-        length,
-        ..
-    } = whole;
+    let Whole { model, state, drive, collocation, trial, length, .. } = whole;
     let end = |index: usize| trial.links.get(index).map_or(0.0, |nodes| nodes.end.approach);
     let (start, finish) = (model.energy(state), model.energy_at(&trial.modes, state.coil, end));
     let moved = model.modes.iter().zip(state.modes.iter().zip(&trial.modes));
@@ -58,13 +50,7 @@ pub(crate) fn surplus<const S: usize>(whole: Whole<S>) -> (f64, f64) {
 /// closed.
 pub(crate) fn is_broken<const S: usize>(whole: Whole<S>) -> bool {
     let (surplus, rounding) = surplus(whole);
-    let Whole {
-        model,
-        state,
-        trial,
-        length,
-        ..
-    } = whole;
+    let Whole { model, state, trial, length, .. } = whole;
     let links = model.links.iter().zip(&state.links).zip(&trial.links);
     let speeds = links.filter(|((_, at), _)| at.closed).map(|((link, at), nodes)| {
         let rate = link.offset(&state.velocities);

@@ -66,39 +66,22 @@ impl<'a, const S: usize> Locator<'a, S> {
             [a, b] => self.touch_between(&sought, Cubic { a: *a, b: *b }, error),
             _ => None,
         })?;
-        Some(Cut {
-            at: touch.at,
-            time: self.whole.state.time + touch.at,
-            event: Event::Switches(index),
-        })
+        Some(Cut { at: touch.at, time: self.whole.state.time + touch.at, event: Event::Switches(index) })
     }
 
     /// An open contact with samples at the start and the nodes of the trial; `None` where it is so far that it stays open, or no
     /// contact.
     #[inline(always)]
     pub(crate) fn near(&self, index: usize) -> Option<(Sought<'a>, [Instant; LONG + 1])> {
-        let Whole {
-            collocation,
-            trial,
-            length,
-            ..
-        } = self.whole;
+        let Whole { collocation, trial, length, .. } = self.whole;
         let (link, start) = self.link(index)?;
-        let first = Instant {
-            at: 0.0,
-            d: start.approach,
-            rate: start.rate,
-        };
+        let first = Instant { at: 0.0, d: start.approach, rate: start.rate };
         let mut samples = [first; LONG + 1];
         let (mut lowest, mut highest, mut fastest) = (first.d, first.d, first.rate.abs());
         let nodes = trial.links.get(index)?;
         let motion = nodes.approaches.iter().zip(&nodes.rates);
         for (entry, (node, (&d, &rate))) in samples.iter_mut().skip(1).zip(collocation.nodes.iter().zip(motion)) {
-            *entry = Instant {
-                at: node * length,
-                d,
-                rate,
-            };
+            *entry = Instant { at: node * length, d, rate };
             (lowest, highest, fastest) = (lowest.min(d), highest.max(d), fastest.max(rate.abs()));
         }
         let reach = DISTANT * (highest - lowest + fastest * length);
@@ -192,11 +175,7 @@ impl<'a, const S: usize> Locator<'a, S> {
                 }
             } else if self.rises(sought, &cubic, error) || depth > HALVINGS {
                 let touch = self.crossing(sought, cubic);
-                return Some(if released {
-                    self.prolonged(sought, touch, SHORTEST_FLIGHT * b.at)
-                } else {
-                    touch
-                });
+                return Some(if released { self.prolonged(sought, touch, SHORTEST_FLIGHT * b.at) } else { touch });
             }
             let middle = self.inside(sought.index, f64::midpoint(a.at, b.at));
             error = (middle.d - cubic.at(middle.at).d).abs();
@@ -259,9 +238,5 @@ fn is_clear_along(link: &Link, cubic: &Cubic, unseen: (f64, f64), least: f64, ha
     if link.engagement(d, rate) < least {
         return true;
     }
-    halvings > 0
-        && cubic
-            .halves()
-            .iter()
-            .all(|half| is_clear_along(link, half, unseen, least, halvings - 1))
+    halvings > 0 && cubic.halves().iter().all(|half| is_clear_along(link, half, unseen, least, halvings - 1))
 }

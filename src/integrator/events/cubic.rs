@@ -55,11 +55,7 @@ impl Cubic {
 
     /// The least displacement, m.
     pub(super) fn lowest(&self) -> f64 {
-        let mirrored = |sample: Instant| Instant {
-            d: -sample.d,
-            rate: -sample.rate,
-            ..sample
-        };
+        let mirrored = |sample: Instant| Instant { d: -sample.d, rate: -sample.rate, ..sample };
         let Self { a, b } = *self;
         let (a, b) = (mirrored(a), mirrored(b));
         -Self { a, b }.highest()
@@ -76,11 +72,7 @@ impl Cubic {
         // A parabola through the three.
         let (rise, bend) = (4.0 * middle - 3.0 * first - last, 2.0 * (first - 2.0 * middle + last));
         let place = -0.5 * rise / bend;
-        let vertex = if 0.0 < place && place < 1.0 {
-            first + 0.5 * rise * place
-        } else {
-            first
-        };
+        let vertex = if 0.0 < place && place < 1.0 { first + 0.5 * rise * place } else { first };
         (first.min(last).min(vertex), first.max(last).max(vertex))
     }
 }
@@ -92,21 +84,14 @@ mod tests {
     #[test]
     fn it_is_the_polynomial_it_was_taken_from() {
         // d = t^3 - 2 t^2 + 0.5 t - 0.1, from 0.2 to 1.7.
-        let of = |at: f64| Instant {
-            at,
-            d: ((at - 2.0) * at + 0.5) * at - 0.1,
-            rate: (3.0 * at - 4.0) * at + 0.5,
-        };
+        let of = |at: f64| Instant { at, d: ((at - 2.0) * at + 0.5) * at - 0.1, rate: (3.0 * at - 4.0) * at + 0.5 };
         let cubic = Cubic { a: of(0.2), b: of(1.7) };
         let (mut highest, mut lowest) = (f64::NEG_INFINITY, f64::INFINITY);
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
         for k in 0..=3000 {
             let at = 0.2 + 5e-4 * f64::from(k);
             let (exact, found) = (of(at), cubic.at(at));
-            assert!(
-                (found.d - exact.d).abs() < 1e-14 && (found.rate - exact.rate).abs() < 1e-13,
-                "{at}"
-            );
+            assert!((found.d - exact.d).abs() < 1e-14 && (found.rate - exact.rate).abs() < 1e-13, "{at}");
             (highest, lowest) = (highest.max(exact.d), lowest.min(exact.d));
             let rate = exact.rate + 0.3 * (6.0 * at - 4.0);
             (least, greatest) = (least.min(rate), greatest.max(rate));
@@ -115,9 +100,6 @@ mod tests {
         let near = |found: f64, sampled: f64| (found - sampled).abs() < 1e-6;
         assert!(near(cubic.highest(), highest) && near(cubic.lowest(), lowest));
         let rates = cubic.rates(0.3);
-        assert!(
-            near(rates.0, least) && near(rates.1, greatest),
-            "{rates:?} {least} {greatest}"
-        );
+        assert!(near(rates.0, least) && near(rates.1, greatest), "{rates:?} {least} {greatest}");
     }
 }

@@ -26,10 +26,7 @@ pub struct Events {
 impl Events {
     /// An empty log.
     pub(crate) fn new() -> Self {
-        Self {
-            list: Vec::with_capacity(EVENTS_KEPT),
-            left_out: 0,
-        }
+        Self { list: Vec::with_capacity(EVENTS_KEPT), left_out: 0 }
     }
 
     /// Adds an event.

@@ -92,9 +92,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let Some((nodes, (_, start))) = whole.trial.links.get(index).zip(self.link(index)) else {
             return self.inside(index, latest);
         };
-        let approach = whole
-            .collocation
-            .through(whole.model.simd, start.approach, &nodes.approaches);
+        let approach = whole.collocation.through(whole.model.simd, start.approach, &nodes.approaches);
         let rate = whole.collocation.through(whole.model.simd, start.rate, &nodes.rates);
         let on_polynomials = |at: f64| {
             let y = at / whole.length - 1.0;
@@ -160,10 +158,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// Engagement that counts as zero where a contact opens, m.
     fn located(&self, link: (&Link, &LinkState)) -> f64 {
         let Whole { model, state, .. } = self.whole;
-        let stiffness = link
-            .0
-            .contact()
-            .map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
+        let stiffness = link.0.contact().map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
         (self.whole.model.tolerance.at_event / stiffness).max(engagement_rounding(model, link, state))
     }
 }

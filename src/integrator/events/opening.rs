@@ -35,12 +35,7 @@ impl<const S: usize> Locator<'_, S> {
         let traces = law.traces();
         let open = |d: f64, rate: f64| link.engagement(d, rate) <= 0.0;
         let motion = nodes.approaches.iter().zip(&nodes.rates);
-        let node = collocation
-            .nodes
-            .iter()
-            .zip(motion)
-            .find(|(_, (d, rate))| open(**d, **rate))
-            .map(|(node, _)| *node);
+        let node = collocation.nodes.iter().zip(motion).find(|(_, (d, rate))| open(**d, **rate)).map(|(node, _)| *node);
         let sure = node.or_else(|| open(nodes.end.approach, nodes.end.rate).then_some(1.0));
 
         let forces = nodes.forces.map(|force| link.force + traces + force);

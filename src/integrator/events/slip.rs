@@ -56,13 +56,8 @@ impl<'a, const S: usize> Locator<'a, S> {
 
     /// Where in the trial the contact first begins or ceases to slip.
     pub(crate) fn slip_change(&mut self) -> Option<Change> {
-        let Rubbing {
-            contact: (contact, contact_at),
-            along: (along, along_at),
-            index,
-            friction,
-            law,
-        } = self.rubbing()?;
+        let Rubbing { contact: (contact, contact_at), along: (along, along_at), index, friction, law } =
+            self.rubbing()?;
         let whole = self.whole;
         let (normal, nodes) = whole.trial.links.get(CONTACT).zip(whole.trial.links.get(index))?;
         let z = -along_at.approach - whole.state.slip.way;
@@ -102,11 +97,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             }
         };
         let at = (1.0 + y) * whole.length;
-        Some(Change {
-            at: if at <= self.resolution { 0.0 } else { at },
-            phase,
-            slope: slope / whole.length,
-        })
+        Some(Change { at: if at <= self.resolution { 0.0 } else { at }, phase, slope: slope / whole.length })
     }
 
     /// The end of the trial at a change: on the polynomials, then on the exact motion under them, as what is missing there would
@@ -125,11 +116,7 @@ impl<'a, const S: usize> Locator<'a, S> {
                 event = Event::Dips;
             }
         }
-        Cut {
-            at,
-            time: self.whole.state.time + at,
-            event,
-        }
+        Cut { at, time: self.whole.state.time + at, event }
     }
 
     /// Whether the contact is beyond the change to a phase `at` seconds after the start, where the polynomial has this value (N): more
@@ -154,13 +141,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let Some(rubbing) = self.rubbing() else {
             return 0.0;
         };
-        let Rubbing {
-            contact: (contact, _),
-            along: (_, along_at),
-            index,
-            friction,
-            law,
-        } = rubbing;
+        let Rubbing { contact: (contact, _), along: (_, along_at), index, friction, law } = rubbing;
         let whole = self.whole;
         let along = self.whole.link(index, end.at, &self.search.modes);
         let d = contact.approach + end.d;
@@ -180,14 +161,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// Rounding of the trial force and of the limit, N.
     fn slip_rounding(&self) -> f64 {
         let Whole { model, state, .. } = self.whole;
-        let Some(Rubbing {
-            contact: (contact, contact_at),
-            along,
-            friction,
-            law,
-            ..
-        }) = self.rubbing()
-        else {
+        let Some(Rubbing { contact: (contact, contact_at), along, friction, law, .. }) = self.rubbing() else {
             return 0.0;
         };
         let (displacement, velocity) = motion_rounding(model, along, state);

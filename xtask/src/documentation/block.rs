@@ -20,11 +20,8 @@ pub fn block(document: &Document) -> Markup {
     let right = LEFT + WIDTH;
     let row = |list: &[Node], index: usize| (rows - list.len()) * PITCH / 2 + (index + 2) * PITCH + PITCH / 4;
     let name = attribute(document.root_element(), "modelName");
-    let label = format!(
-        "{name} as a block: {} inputs on the left, {} outputs on the right",
-        inputs.len(),
-        outputs.len()
-    );
+    let label =
+        format!("{name} as a block: {} inputs on the left, {} outputs on the right", inputs.len(), outputs.len());
     html! {
         svg.block viewBox=(format!("0 0 {} {}", right + RIGHT, height + 2)) width=(right + RIGHT) role="img" aria-label=(label) {
             rect x=(LEFT) y="1" width=(WIDTH) height=(height) rx="8" {}
@@ -51,12 +48,8 @@ pub fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
 }
 
 pub fn variables<'a>(document: &'a Document, causality: &str) -> Vec<Node<'a, 'a>> {
-    let variables = document
-        .descendants()
-        .filter(|node| node.has_tag_name("ScalarVariable"));
-    variables
-        .filter(|node| attribute(*node, "causality") == causality)
-        .collect()
+    let variables = document.descendants().filter(|node| node.has_tag_name("ScalarVariable"));
+    variables.filter(|node| attribute(*node, "causality") == causality).collect()
 }
 
 /// What a variable carries: its unit, or else its type.

@@ -31,10 +31,7 @@ pub fn page(variant: &Variant) -> Result<String> {
     let name = attribute(model, "modelName");
     let version = attribute(model, "version");
     let sections = SECTIONS.map(|title| section(&readme, title).map(|text| (title, markdown(text))));
-    let mut enumerations: Vec<_> = document
-        .descendants()
-        .filter(|node| node.has_tag_name("Enumeration"))
-        .collect();
+    let mut enumerations: Vec<_> = document.descendants().filter(|node| node.has_tag_name("Enumeration")).collect();
     enumerations.retain(Node::has_children);
     let page = html! {
         (DOCTYPE)
@@ -93,10 +90,8 @@ fn markdown(text: &str) -> Markup {
         _ => true,
     });
     pulldown_cmark::html::push_html(&mut html, events);
-    let (open, close) = (
-        r#"<div class="scroll" role="region" tabindex="0" aria-label="Table"><table>"#,
-        "</table></div>",
-    );
+    let (open, close) =
+        (r#"<div class="scroll" role="region" tabindex="0" aria-label="Table"><table>"#, "</table></div>");
     PreEscaped(html.replace("<table>", open).replace("</table>", close))
 }
 
@@ -108,13 +103,9 @@ fn scroll(label: &str, content: &Markup) -> Markup {
 /// The start value; of an enumeration, the choice's name.
 fn start<'a>(document: &'a Document, value: Node<'a, 'a>) -> &'a str {
     let start = attribute(value, "start");
-    let items = declared(document, value)
-        .into_iter()
-        .flat_map(|declared| declared.descendants());
+    let items = declared(document, value).into_iter().flat_map(|declared| declared.descendants());
     let mut items = items.filter(|item| item.has_tag_name("Item"));
-    items
-        .find(|item| attribute(*item, "value") == start)
-        .map_or(start, |item| attribute(item, "name"))
+    items.find(|item| attribute(*item, "value") == start).map_or(start, |item| attribute(item, "name"))
 }
 
 fn table(document: &Document, causality: &str) -> Markup {
@@ -169,9 +160,7 @@ fn introduction(readme: &str) -> Result<&str> {
 /// The text below a heading of the README, up to the next one.
 fn section<'a>(readme: &'a str, title: &str) -> Result<&'a str> {
     let heading = format!("\n## {title}\n");
-    let (_, rest) = readme
-        .split_once(&heading)
-        .with_context(|| format!("README.md has no section {title:?}"))?;
+    let (_, rest) = readme.split_once(&heading).with_context(|| format!("README.md has no section {title:?}"))?;
     let text = rest.split("\n## ").next().unwrap_or(rest).trim();
     ensure!(!text.is_empty(), "section {title:?} of README.md is empty");
     Ok(text)
@@ -200,9 +189,8 @@ mod tests {
         // The format of spring files, with its tables and examples, and no link out of the archive.
         assert!(page.contains("<td><code>clamp_stiffness</code></td>") && page.contains("[[segment]]"));
         let links = page.split("href=\"").skip(1);
-        let outside: Vec<_> = links
-            .filter(|link| !link.starts_with("http") && !link.starts_with("licenses/license.txt"))
-            .collect();
+        let outside: Vec<_> =
+            links.filter(|link| !link.starts_with("http") && !link.starts_with("licenses/license.txt")).collect();
         assert!(outside.is_empty(), "{outside:?}");
         Ok(())
     }
@@ -221,10 +209,7 @@ mod tests {
         assert!(page.contains(": 1 FromPreload, 2 None, 3 FromDeflection, 4 Prescribed</td>"));
         assert!(page.contains("<td>String</td><td></td><td>parameter</td><td>tapered-cube.toml</td>"));
         let spring = std::fs::read_to_string(path)?;
-        let first = spring
-            .lines()
-            .find(|line| line.starts_with("length"))
-            .context("no length")?;
+        let first = spring.lines().find(|line| line.starts_with("length")).context("no length")?;
         assert!(
             page.contains("carries the spring of <a href=\"#spring\">tapered-cube.toml</a>") && page.contains(first)
         );

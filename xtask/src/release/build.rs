@@ -34,9 +34,7 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
         build = cargo();
         build.env("SDKROOT", sdk(&tools.zig, &folder)?);
         // The linker strips: rustc would ask for a program that is not there.
-        build
-            .env("MACOSX_DEPLOYMENT_TARGET", MACOS)
-            .env("CARGO_PROFILE_RELEASE_STRIP", "none");
+        build.env("MACOSX_DEPLOYMENT_TARGET", MACOS).env("CARGO_PROFILE_RELEASE_STRIP", "none");
     } else {
         version = format!(".{GLIBC}");
     }
@@ -48,11 +46,7 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
     let paths = names.map(|name| release.join(name));
     let path = paths.iter().find(|path| path.exists());
     let library = read(path.with_context(|| format!("cargo built no library in {}", release.display()))?)?;
-    if target.contains("windows") {
-        without_time(library)
-    } else {
-        Ok(library)
-    }
+    if target.contains("windows") { without_time(library) } else { Ok(library) }
 }
 
 /// Lets cargo compile the standard library too, with this crate for panics and without what prints backtraces: that would be an

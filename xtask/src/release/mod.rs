@@ -36,11 +36,8 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     let asked = |platform: &&Platform| {
         arguments.platforms.is_empty() || arguments.platforms.iter().any(|name| name == platform.folder)
     };
-    let release = Release {
-        metadata: &metadata,
-        tools: &tools,
-        private: check::private_folders(&metadata, &tools.rust.rustc)?,
-    };
+    let release =
+        Release { metadata: &metadata, tools: &tools, private: check::private_folders(&metadata, &tools.rust.rustc)? };
     let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     for platform in PLATFORMS.iter().filter(asked) {
         println!("== {}", platform.folder);
@@ -94,23 +91,12 @@ struct Release<'a> {
 impl Release<'_> {
     /// The archive with these libraries.
     fn packed(&self, libraries: &[(&Platform, Vec<u8>)]) -> Result<Vec<u8>> {
-        let targets: Vec<_> = libraries
-            .iter()
-            .flat_map(|(platform, _)| platform.targets.iter().copied())
-            .collect();
-        let binaries = libraries
-            .iter()
-            .map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
+        let targets: Vec<_> = libraries.iter().flat_map(|(platform, _)| platform.targets.iter().copied()).collect();
+        let binaries =
+            libraries.iter().map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
         let (variant, licences) = (Variant::new(false, None)?, self.tools.licences()?);
         let rustc = &self.tools.rust.rustc;
-        pack(&fmu::files(
-            &variant,
-            self.metadata,
-            binaries,
-            rustc,
-            &targets,
-            licences,
-        )?)
+        pack(&fmu::files(&variant, self.metadata, binaries, rustc, &targets, licences)?)
     }
 
     /// The library of a platform, checked, and what its trial showed.
@@ -129,10 +115,7 @@ impl Release<'_> {
             bail!("checks failed: {}", failed.collect::<Vec<_>>().join(", "));
         }
         let name = format!("RelayContact.{}", platform.extension);
-        let path = build::folder(self.metadata)
-            .join("libraries")
-            .join(platform.folder)
-            .join(name);
+        let path = build::folder(self.metadata).join("libraries").join(platform.folder).join(name);
         write(&path, &library)?;
         let trial = trial::run(platform, &path, &self.tools.zig)?;
         println!("{trial}");
@@ -142,9 +125,7 @@ impl Release<'_> {
 
 /// A file's line of `SHA256SUMS`, as `sha256sum --check` reads it.
 fn sum(name: &str, contents: &[u8]) -> String {
-    let digits = Sha256::digest(contents)
-        .iter()
-        .fold(String::new(), |digits, byte| digits + &format!("{byte:02x}"));
+    let digits = Sha256::digest(contents).iter().fold(String::new(), |digits, byte| digits + &format!("{byte:02x}"));
     format!("{digits}  {name}\n")
 }
 

@@ -20,12 +20,7 @@ impl Platform {
         targets: &'static [&'static str],
         wheel: &'static str,
     ) -> Self {
-        Self {
-            folder,
-            extension,
-            targets,
-            wheel,
-        }
+        Self { folder, extension, targets, wheel }
     }
 }
 

@@ -95,10 +95,7 @@ impl Runner {
         match platform.folder {
             _ if is_host(platform) => {
                 ensure!(is_there("cc"), missing("cc", "gcc libc6-dev"));
-                Ok(Self {
-                    compiler: vec!["cc".into()],
-                    start: Vec::new(),
-                })
+                Ok(Self { compiler: vec!["cc".into()], start: Vec::new() })
             }
             "aarch64-linux" => {
                 ensure!(is_there("qemu-aarch64"), missing("qemu-aarch64", "qemu-user"));
@@ -218,10 +215,7 @@ mod tests {
         let result = run(host, &library, Path::new("no zig"))?;
         // 20 ms in steps of 10 us, and the start; the same code on the same machine rounds the same.
         assert!(result.starts_with("interruptions of 5 us or more: "), "{result}");
-        assert!(
-            result.ends_with("2001 forces, all with the bits of this machine's"),
-            "{result}"
-        );
+        assert!(result.ends_with("2001 forces, all with the bits of this machine's"), "{result}");
         Ok(())
     }
 }

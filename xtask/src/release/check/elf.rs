@@ -61,12 +61,7 @@ pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
         _ => super::report::listed(&too_new),
     };
     let [major, minor] = GLIBC;
-    report.add(
-        "symbol versions",
-        found,
-        format!("GLIBC_, up to {major}.{minor}"),
-        too_new.is_empty(),
-    );
+    report.add("symbol versions", found, format!("GLIBC_, up to {major}.{minor}"), too_new.is_empty());
     Ok(())
 }
 

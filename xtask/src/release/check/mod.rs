@@ -42,9 +42,7 @@ pub fn library(platform: &Platform, bytes: &[u8], private: &[PathBuf]) -> Result
 pub fn private_folders(metadata: &Metadata, rustc: &Path) -> Result<Vec<PathBuf>> {
     let compiler = sysroot(rustc)?.join("lib").join("rustlib");
     let project = [&metadata.workspace_root, &metadata.target_directory].map(Into::into);
-    let user = ["HOME", "USERPROFILE", "CARGO_HOME", "RUSTUP_HOME"]
-        .into_iter()
-        .filter_map(env::var_os);
+    let user = ["HOME", "USERPROFILE", "CARGO_HOME", "RUSTUP_HOME"].into_iter().filter_map(env::var_os);
     let folders = project.into_iter().chain([compiler]).chain(user.map(PathBuf::from));
     // `/` would be found everywhere.
     Ok(folders.filter(|folder| folder.parent().is_some()).collect())
@@ -54,10 +52,8 @@ pub fn private_folders(metadata: &Metadata, rustc: &Path) -> Result<Vec<PathBuf>
 fn universal(report: &mut Report, targets: &[&'static str], bytes: &[u8], private: &[PathBuf]) -> Result<()> {
     const PAGE: u32 = 0x4000;
     let parts = MultiArch::new(bytes)?.arches()?;
-    let found: Vec<_> = parts
-        .iter()
-        .map(|part| format!("{} at {:#x}", macho::processor(part.cputype), part.offset))
-        .collect();
+    let found: Vec<_> =
+        parts.iter().map(|part| format!("{} at {:#x}", macho::processor(part.cputype), part.offset)).collect();
     let processors: BTreeSet<_> = parts.iter().map(|part| macho::processor(part.cputype)).collect();
     let expected: BTreeSet<_> = targets.iter().map(|target| processor(target)).collect();
     let aligned = parts.iter().all(|part| part.offset.is_multiple_of(PAGE));
@@ -70,9 +66,7 @@ fn universal(report: &mut Report, targets: &[&'static str], bytes: &[u8], privat
         processors == expected && parts.len() == targets.len() && aligned,
     );
     for target in targets {
-        let part = parts
-            .iter()
-            .find(|part| macho::processor(part.cputype) == processor(target));
+        let part = parts.iter().find(|part| macho::processor(part.cputype) == processor(target));
         let range = part.map(|part| part.offset as usize..part.offset as usize + part.size as usize);
         if let Some(library) = range.and_then(|range| bytes.get(range)) {
             single(report, target, library, private)?;
@@ -91,12 +85,7 @@ fn single(report: &mut Report, target: &'static str, bytes: &[u8], private: &[Pa
     } else {
         macho::check(report, bytes)?;
     }
-    report.add(
-        "size",
-        format!("{} bytes", bytes.len()),
-        format!("under {SIZE} bytes"),
-        bytes.len() < SIZE,
-    );
+    report.add("size", format!("{} bytes", bytes.len()), format!("under {SIZE} bytes"), bytes.len() < SIZE);
     let (guid, found) = (variables::GUID, position(bytes, variables::GUID).is_some());
     report.add("GUID", if found { guid } else { "another" }, guid, found);
     let paths: Vec<_> = private.iter().filter_map(|folder| path_within(bytes, folder)).collect();
@@ -113,10 +102,6 @@ fn path_within(bytes: &[u8], folder: &Path) -> Option<String> {
     let folder = folder.to_string_lossy();
     let starts = ['/', '\\'].map(|separator| format!("{folder}{separator}"));
     let at = starts.iter().find_map(|start| position(bytes, start))?;
-    let text = bytes
-        .get(at..)?
-        .iter()
-        .take(100)
-        .take_while(|byte| byte.is_ascii_graphic());
+    let text = bytes.get(at..)?.iter().take(100).take_while(|byte| byte.is_ascii_graphic());
     Some(text.map(|byte| char::from(*byte)).collect())
 }

@@ -46,11 +46,7 @@ impl Report {
         let stray: Vec<_> = exported.difference(&declared).collect();
         let missing: Vec<_> = declared.difference(exported).collect();
         let count = exported.len();
-        let found = format!(
-            "{count} symbols, not declared: {}, missing: {}",
-            listed(&stray),
-            listed(&missing)
-        );
+        let found = format!("{count} symbols, not declared: {}, missing: {}", listed(&stray), listed(&missing));
         let allowed = format!("the {} functions of the C header", declared.len());
         self.add("exported symbols", found, allowed, *exported == declared);
     }
@@ -70,11 +66,7 @@ impl Report {
 
 pub fn listed(names: &[impl AsRef<str>]) -> String {
     let names: Vec<_> = names.iter().map(AsRef::as_ref).collect();
-    if names.is_empty() {
-        "none".to_owned()
-    } else {
-        names.join(", ")
-    }
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
 /// The processor in a target's name.

@@ -66,11 +66,7 @@ impl Tiny {
 
     /// Functions without code, and the data.
     fn object(&self) -> Result<Vec<u8>> {
-        let architecture = if self.is_arm() {
-            Architecture::Aarch64
-        } else {
-            Architecture::X86_64
-        };
+        let architecture = if self.is_arm() { Architecture::Aarch64 } else { Architecture::X86_64 };
         let mut object = Object::new(BinaryFormat::MachO, architecture, Endianness::Little);
         let text = object.add_section(b"__TEXT".to_vec(), b".text".to_vec(), SectionKind::Text);
         let data = object.add_section(b"__DATA".to_vec(), b".data".to_vec(), SectionKind::Data);
