@@ -34,9 +34,7 @@ impl Circuits {
     /// Begins and ends interruptions at an instant (s) as these forces do.
     pub fn note(&mut self, links: &[Link], forces: impl Iterator<Item = f64>, time: f64) {
         for (index, (link, force)) in links.iter().zip(forces).enumerate() {
-            let Some(criterion) = &link.criterion else {
-                continue;
-            };
+            let Some(criterion) = &link.criterion else { continue };
             if (force < criterion.force) != self.is_interrupted(index) {
                 self.turn(links, index, time);
             }
@@ -56,9 +54,7 @@ impl Circuits {
             // Those of the contacts of a circuit in the order of time.
             let ahead = passages.iter().zip(&passed).take(links.len()).enumerate();
             let ahead = ahead.filter_map(|(index, (places, passed))| Some((index, places.until(now).nth(*passed)?)));
-            let Some((index, place)) = ahead.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-                return;
-            };
+            let Some((index, place)) = ahead.min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
             if let Some(passed) = passed.get_mut(index) {
                 *passed += 1;
             }
@@ -68,9 +64,7 @@ impl Circuits {
 
     /// Begins or ends the interruption of a contact at an instant (s), and with it that of its circuit.
     fn turn(&mut self, links: &[Link], index: usize, time: f64) {
-        let Some((link, at)) = links.get(index).zip(self.interrupted.get_mut(index)) else {
-            return;
-        };
+        let Some((link, at)) = links.get(index).zip(self.interrupted.get_mut(index)) else { return };
         *at = !*at;
         let mut counted = links.iter().zip(&self.interrupted);
         let all = counted.all(|(other, at)| *at || other.criterion.is_none() || other.circuit != link.circuit);

@@ -91,9 +91,7 @@ pub(crate) fn output(model: &Model, motion: &Motion, output: RealOutput) -> f64 
 /// are not requested.
 pub(crate) fn greatest_resistance(model: &Model, motion: &Motion) -> f64 {
     let electrical = model.links.get(CONTACT).and_then(|link| link.electrical);
-    let Some(electrical) = electrical.filter(|_| model.scene.effects.extremes) else {
-        return 0.0;
-    };
+    let Some(electrical) = electrical.filter(|_| model.scene.effects.extremes) else { return 0.0 };
     let mut extremes = motion.extremes(model);
     1.0 / match model.roles.parallel {
         Some(_) => electrical.beside(extremes.pair),
@@ -103,9 +101,7 @@ pub(crate) fn greatest_resistance(model: &Model, motion: &Motion) -> f64 {
 
 /// Rate of a continuous output of the circuits, in its SI unit per second.
 pub(crate) fn rate(model: &Model, motion: &Motion, output: RealOutput) -> f64 {
-    let Some(circuit) = Conducting::of(model, motion, role(model, output)) else {
-        return 0.0;
-    };
+    let Some(circuit) = Conducting::of(model, motion, role(model, output)) else { return 0.0 };
     let rates = circuit.rates(model, motion);
     let (conductance, rate) = (circuit.conductance, rates.iter().sum::<f64>());
     match output {

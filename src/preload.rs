@@ -177,9 +177,7 @@ impl<'a> Pressed<'a> {
     /// Force of the pusher (N) and its overlap with the spring (m), 0 without one, under the forces of both contacts and an axial
     /// force (N).
     fn press(&self, [force, parallel]: [f64; 2], n: f64) -> (f64, f64) {
-        let Some(place) = self.pushed else {
-            return (0.0, 0.0);
-        };
+        let Some(place) = self.pushed else { return (0.0, 0.0) };
         let by = self.springs.moving.statics.at_pusher(n);
         let by_parallel = self.parallel.map_or(0.0, |_| self.springs.at_parallel(n).pushed * parallel);
         // Friction turns the spring as it presses the contact.
@@ -215,9 +213,7 @@ impl<'a> Pressed<'a> {
     /// The equilibrium. The more a parallel contact presses, the less it is indented by where the spring is then.
     fn equilibrium(&self) -> Result<Preload, SceneError> {
         let first = self.with(0.0)?;
-        let Some(law) = self.parallel else {
-            return Ok(first);
-        };
+        let Some(law) = self.parallel else { return Ok(first) };
         let open = self.parallel_indentation(&first, 0.0);
         if open <= 0.0 {
             return Ok(Preload { parallel_indentation: open, ..first });

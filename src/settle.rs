@@ -11,9 +11,7 @@ impl Model {
     /// Sets approaches, forces, and whether contacts are closed, stick or slip, as they follow from the motion of the modes.
     pub fn settle(&self, state: &mut State) {
         for (link, at) in self.links.iter().zip(&mut state.links) {
-            let Some(port) = self.ports.get(link.port) else {
-                continue;
-            };
+            let Some(port) = self.ports.get(link.port) else { continue };
             let (y, rate) = port.motion::<Separate>(&state.modes);
             at.approach = link.offset(&state.displacements) - link.sense * y;
             at.rate = link.offset(&state.velocities) - link.sense * rate;
@@ -43,9 +41,7 @@ impl Model {
     /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than
     /// before.
     pub(crate) fn settle_friction(&self, state: &mut State) {
-        let Some((friction, law, contact, along, slip)) = self.rubbing(state) else {
-            return;
-        };
+        let Some((friction, law, contact, along, slip)) = self.rubbing(state) else { return };
         let (displacement, rate) = (-along.approach, -along.rate);
         if !contact.closed {
             (along.force, slip.way, slip.phase) = (0.0, displacement, Phase::Stick);
@@ -98,9 +94,7 @@ impl Model {
 
     /// Sets the friction force of the phase of a state at its motion.
     pub(crate) fn set_friction_force(&self, state: &mut State) {
-        let Some((friction, law, contact, along, slip)) = self.rubbing(state) else {
-            return;
-        };
+        let Some((friction, law, contact, along, slip)) = self.rubbing(state) else { return };
         along.force = match slip.phase.sign() {
             _ if !contact.closed => 0.0,
             Some(sign) => sign * friction.coefficient * contact.force,

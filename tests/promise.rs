@@ -64,9 +64,7 @@ fn too_few_modes_are_not_silent() {
         for number in first..first + 24 {
             let mut relay = draw(number);
             (relay.scene.solver.modes, relay.scene.solver.tolerance) = (modes, 1e-6);
-            let Ok((expected, None)) = relay.run(|scene| tighten(scene, PART, 0.0)) else {
-                continue;
-            };
+            let Ok((expected, None)) = relay.run(|scene| tighten(scene, PART, 0.0)) else { continue };
             let (course, _) = relay.run(|_| {}).unwrap();
             let (force, extremes) = course.error(&expected);
             if force.max(extremes) > 1e-6 {

@@ -91,9 +91,7 @@ fn question(problem: &Problem, tolerance: f64) -> Result<String, Failure> {
     for mode in &model.modes {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
-    let Law::Power(power) = &model.law else {
-        return Err(Failure::Stopped("a linear contact".to_owned()));
-    };
+    let Law::Power(power) = &model.law else { return Err(Failure::Stopped("a linear contact".to_owned())) };
     line(&[power.coefficient, power.damping, power.exponent]);
     let (amplitude, omega, phase) = problem.sine();
     line(&[model.preload.force, model.preload.indentation]);

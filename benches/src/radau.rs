@@ -192,9 +192,7 @@ impl<'a> Motion<'a> {
     fn cut(&self, trial: Trial, time: f64, h: f64) -> (Trial, f64, bool) {
         let end = STAGES - 1;
         let outside = (0..STAGES).find(|i| self.inside(trial.d[*i], trial.rate[*i]) <= 0.0);
-        let Some(outside) = outside else {
-            return (trial, h, false);
-        };
+        let Some(outside) = outside else { return (trial, h, false) };
         // A branch begins at zero engagement: the shortest steps there are of it whatever rounding says.
         if h < 1e-13 {
             return (trial, h, false);

@@ -149,9 +149,7 @@ fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
 
 /// Mostly near the start value, sometimes a bound, rarely out of range.
 fn value(choices: &mut Choices, reference: u32) -> f64 {
-    let Some(variable) = DESCRIPTION.variable(reference) else {
-        return choices.unit();
-    };
+    let Some(variable) = DESCRIPTION.variable(reference) else { return choices.unit() };
     let Variable { start, min, max, .. } = *variable;
     let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, max * 1.5 + 1.0, min - 1.0, 1e306, -1e306, 5e-324];
     let pick = choices.below(100);
@@ -257,9 +255,7 @@ fn output_derivatives(choices: &mut Choices) -> Call {
 }
 
 fn replay(choices: &mut Choices, now: &Moment) -> Call {
-    let Call::Set(_, values, _) = set(choices, now, Kind::Real) else {
-        return Call::Reset;
-    };
+    let Call::Set(_, values, _) = set(choices, now, Kind::Real) else { return Call::Reset };
     Call::Replay {
         slot: choices.below(SLOTS),
         inputs: values,

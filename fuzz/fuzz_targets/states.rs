@@ -13,7 +13,7 @@ static SPECIMEN: LazyLock<Vec<u8>> = LazyLock::new(|| specimen(&LINKED, &[]));
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&way, rest)) = bytes.split_first() else {
-        return;
+        return
     };
     let hostile = match way % 4 {
         0 => rest.to_vec(),

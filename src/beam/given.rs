@@ -85,9 +85,7 @@ impl Given {
         };
         let count = count.min(MAX_MODES).saturating_sub(self.residuals());
         let mut modes: Vec<_> = self.modes.iter().take(count).map(mode).collect();
-        let Some(highest) = modes.last().map(|mode| mode.omega_squared) else {
-            return modes;
-        };
+        let Some(highest) = modes.last().map(|mode| mode.omega_squared) else { return modes };
         let omega_squared = RESIDUAL.powi(2) * highest;
         // Where each mode has its own damping, that of the scene is not meant for this spring.
         let own = self.modes.iter().all(|mode| mode.damping.is_some());

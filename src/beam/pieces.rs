@@ -157,9 +157,7 @@ impl Pieces {
 
     /// Whether it is a uniform spring with its contact at the end, and no mass but there.
     pub fn are_uniform(&self) -> bool {
-        let Some((last, others)) = self.parts.split_last() else {
-            return true;
-        };
+        let Some((last, others)) = self.parts.split_last() else { return true };
         let section = last.section(1.0);
         let same = |piece: &Piece| piece.section(0.0) == section && piece.section(1.0) == section;
         let bare = |piece: &Piece| same(piece) && piece.mass == 0.0 && piece.inertia == 0.0;

@@ -15,9 +15,7 @@ use crate::variables::PusherKind;
 /// static compliance is then the deflection of a contact per force on it less the same force on the other.
 pub fn scene(scene: &Scene) -> Option<Scene> {
     let file = scene.spring.as_ref().filter(|_| scene.effects.parallel_contact)?;
-    let Shape::Segments(segments) = &file.shape else {
-        return None;
-    };
+    let Shape::Segments(segments) = &file.shape else { return None };
     let mut own = scene.clone();
     own.spring = Some(Arc::new(SpringFile {
         name: file.name.clone(),

@@ -72,9 +72,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     loggingOn: fmi2Boolean,
 ) -> fmi2Component {
     // SAFETY: the contract of the module.
-    let Ok([functions]) = (unsafe { array(functions, 1, "functions") }) else {
-        return ptr::null_mut();
-    };
+    let Ok([functions]) = (unsafe { array(functions, 1, "functions") }) else { return ptr::null_mut() };
     // SAFETY: the contract of the module.
     let [name, guid, resources] = unsafe {
         [text(instanceName, "instanceName"), text(fmuGUID, "fmuGUID"), text(fmuResourceLocation, "fmuResourceLocation")]

@@ -69,9 +69,7 @@ pub(super) unsafe fn call(
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> fmi2Status {
     // SAFETY: passed on to the caller.
-    let Some(handle) = (unsafe { occupy(component, BUSY) }) else {
-        return fmi2Error;
-    };
+    let Some(handle) = (unsafe { occupy(component, BUSY) }) else { return fmi2Error };
     // SAFETY: the guard held IDLE, so the memory came from `hand_out`; it holds BUSY now, so nobody else has a reference.
     let (guard, instance) = unsafe { (&(*handle).guard, &mut *(*handle).instance.get()) };
     let status = with_default(|| {

@@ -99,12 +99,8 @@ impl Logger {
     }
 
     pub(super) fn log(&self, category: Category, status: fmi2Status, message: &str) {
-        let Some(callback) = self.callback.filter(|_| self.shows(category)) else {
-            return;
-        };
-        let Ok(format) = CString::new(printf_safe(message)) else {
-            return;
-        };
+        let Some(callback) = self.callback.filter(|_| self.shows(category)) else { return };
+        let Ok(format) = CString::new(printf_safe(message)) else { return };
         // SAFETY: the importer promises a logger of this type that can be called until the instance is freed. The
         // strings live through the call, and the format asks for no further argument.
         unsafe {

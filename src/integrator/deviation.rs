@@ -29,9 +29,7 @@ impl ForceError {
     /// A contact at this port opens or closes, which begins the deviation with a blow, or adds one where its modes have hardly any
     /// part in it: the other bodies' would hide how errors grow there.
     pub(crate) fn begin(&mut self, slowest: &Slowest, port: usize) {
-        let (Some(shape), Some(by_impulse)) = (slowest.shapes.get(port), slowest.by_impulse.get(port)) else {
-            return;
-        };
+        let (Some(shape), Some(by_impulse)) = (slowest.shapes.get(port), slowest.by_impulse.get(port)) else { return };
         let energies = self.deviation.energies(slowest).zip(shape);
         let energy: f64 = energies.filter(|(_, shape)| **shape != 0.0).map(|(energy, _)| energy).sum();
         if *by_impulse == 0.0 || energy > HIDDEN {
@@ -84,9 +82,7 @@ impl ForceError {
             closed |= index == CONTACT;
             drawn |= tangent.stiffness < 0.0;
             let links = self.forces.get_mut(index).zip(before.get(index));
-            let Some(((force, before), shape)) = links.zip(slowest.shapes.get(port)) else {
-                continue;
-            };
+            let Some(((force, before), shape)) = links.zip(slowest.shapes.get(port)) else { continue };
             let (y, rate) = (dot::<MODES, A>(shape, &next_q), dot::<MODES, A>(shape, &next_v));
             // The force at the end is that of the law at the motion that the mean force causes.
             let Tangent { stiffness, damping, gain } = tangent;

@@ -93,12 +93,8 @@ impl Stepper<'_> {
     /// Opens or closes a contact as it is after a step of `length` seconds with constant forces, and sets its force; whether it
     /// opens or closes.
     fn switch_after_constant_force(&mut self, trial: &Trial<SHORT>, index: usize, length: f64) -> bool {
-        let Some((link, nodes)) = self.model.links.get(index).zip(trial.links.get(index)) else {
-            return false;
-        };
-        let (Some(law), end) = (link.contact(), &nodes.end) else {
-            return false;
-        };
+        let Some((link, nodes)) = self.model.links.get(index).zip(trial.links.get(index)) else { return false };
+        let (Some(law), end) = (link.contact(), &nodes.end) else { return false };
         let closed = link.engagement(end.approach, end.rate) > 0.0;
         let switched = self.state.links.get(index).is_some_and(|at| at.closed != closed);
         if switched {

@@ -71,9 +71,7 @@ fn step_until(model: &Model, state: &mut State, workspace: &mut Workspace, drive
 /// the contact may open or be interrupted.
 fn step(model: &Model, state: &mut State, workspace: &mut Workspace, drive: &Drive, length: f64) -> bool {
     let mut free = [0.0; 2 * MAX_MODES];
-    let Some(start) = Start::new(model, state, drive, length, &mut free) else {
-        return false;
-    };
+    let Some(start) = Start::new(model, state, drive, length, &mut free) else { return false };
     let propagator = workspace.propagators.get(length, |propagator| {
         propagator.fill(length, &start.closed_loop.oscillators, &model.generator);
     });
@@ -106,9 +104,7 @@ pub(crate) fn step_ahead(
         return step_until(model, state, workspace, drive, until);
     }
     let mut free = [0.0; 2 * MAX_MODES];
-    let Some(start) = Start::new(model, state, drive, requested, &mut free) else {
-        return false;
-    };
+    let Some(start) = Start::new(model, state, drive, requested, &mut free) else { return false };
     loop {
         let mut length = round_down(requested.min(longest));
         let mut time = state.time + length;
@@ -124,9 +120,7 @@ pub(crate) fn step_ahead(
         let propagator = workspace.dense_propagators.get(length, |propagator| {
             propagator.fill(length, start.closed_loop, &model.generator, &collocation.nodes);
         });
-        let Some(propagator) = propagator else {
-            return false;
-        };
+        let Some(propagator) = propagator else { return false };
         let [indentations, rates] = start.at_nodes(state, propagator.tip_at_nodes(model.simd, &free, start.phasor));
         let defect = |start: f64, values: &Nodal<LONG>| start - dot::<LONG, Separate>(values, &collocation.at_start);
         let stiffness = start.law.stiffness;
@@ -172,9 +166,7 @@ impl<'a> Start<'a> {
     /// `None` if the motion in it is not linear, as the contact may open or be interrupted.
     fn new(model: &'a Model, state: &State, drive: &Drive, length: f64, free: &mut Coordinates) -> Option<Self> {
         let closed_loop = model.closed_loop.as_deref()?;
-        let Law::Linear(law) = model.law else {
-            return None;
-        };
+        let Law::Linear(law) = model.law else { return None };
         let contact = &state.links[CONTACT];
         if !(contact.closed || law.bonded) || state.circuits.is_interrupted(CONTACT) {
             return None;

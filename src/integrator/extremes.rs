@@ -107,9 +107,7 @@ impl Extremes {
         course: impl Fn(usize) -> Option<(&'a Prediction, Places)>,
         (from, to): (f64, f64),
     ) {
-        let Some(pair) = pair(model) else {
-            return;
-        };
+        let Some(pair) = pair(model) else { return };
         let courses = pair.map(|(index, spot)| {
             let (polynomial, turns) = course(index)?;
             Some((model.links.get(index)?.force, polynomial, turns, spot))
@@ -123,9 +121,7 @@ impl Extremes {
         let turns = courses.iter().flatten().flat_map(|(_, _, turns, _)| turns.between(from, to));
         let grid = (0..=SAMPLES).map(|n| from + (to - from) * f64::from(n) / f64::from(SAMPLES));
         let least = grid.chain(turns).map(|y| (y, conductance(y))).min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((mut y, mut least)) = least else {
-            return;
-        };
+        let Some((mut y, mut least)) = least else { return };
         // Between the samples a parabola, closer with each time; beside an end of the step through samples inside.
         let mut apart = (to - from) / f64::from(SAMPLES);
         for _ in 0..3 {

@@ -36,9 +36,7 @@ impl Stepper<'_> {
     /// Length of a step with many nodes whose polynomials follow the force of a contact, which goes as the root of the time since it
     /// closed, s.
     pub(super) fn smooth(&self) -> f64 {
-        let Some(closing) = self.state.last_closing() else {
-            return f64::INFINITY;
-        };
+        let Some(closing) = self.state.last_closing() else { return f64::INFINITY };
         let links = self.model.links.iter().zip(&self.state.links);
         let closed = links.filter(|(link, at)| at.closed && link.contact().is_some());
         let force = closed.fold(0.0, |most, (_, at)| at.force.max(most));

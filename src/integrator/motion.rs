@@ -182,9 +182,7 @@ impl Motion {
 
     /// A link at the communication point; nothing of a model that has no such link.
     pub fn link(&self, model: &Model, index: usize) -> LinkNow {
-        let Some((_, state, dense)) = self.seen(model, index) else {
-            return LinkNow::default();
-        };
+        let Some((_, state, dense)) = self.seen(model, index) else { return LinkNow::default() };
         let force = self.force(model, index);
         let (approach, rate) = match dense {
             Some((dense, y)) => (value_at(&dense.approach, y), value_at(&dense.rate, y)),
@@ -195,12 +193,8 @@ impl Motion {
 
     /// Its force alone, N.
     pub fn force(&self, model: &Model, index: usize) -> f64 {
-        let Some((link, state, dense)) = self.seen(model, index) else {
-            return 0.0;
-        };
-        let Some((dense, y)) = dense else {
-            return state.force;
-        };
+        let Some((link, state, dense)) = self.seen(model, index) else { return 0.0 };
+        let Some((dense, y)) = dense else { return state.force };
         if !state.closed {
             return 0.0;
         }
@@ -212,18 +206,14 @@ impl Motion {
     /// Rates of force (N/s) and velocity (m/s2) of a contact at the communication point; at a discontinuity, the limit from the
     /// left.
     pub fn link_rates(&self, model: &Model, index: usize) -> (f64, f64) {
-        let Some((link, state, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else {
-            return (0.0, 0.0);
-        };
+        let Some((link, state, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else { return (0.0, 0.0) };
         if let Some((dense, y)) = dense {
             let slope = |values| value_and_slope(values, y).1 / self.length();
             let force = if state.closed { slope(&dense.force) } else { 0.0 };
             return (force, slope(&dense.rate));
         }
         let acceleration = self.acceleration(model, link);
-        let Some(law) = link.contact().filter(|_| state.closed) else {
-            return (0.0, acceleration);
-        };
+        let Some(law) = link.contact().filter(|_| state.closed) else { return (0.0, acceleration) };
         let branch = law.closed_branch(link.approach + state.approach, state.rate);
         (branch.stiffness * state.rate + branch.damping * acceleration, acceleration)
     }
@@ -231,9 +221,7 @@ impl Motion {
     /// Second derivative of the approach of a link at the end of a step, m/s2.
     fn acceleration(&self, model: &Model, link: &Link) -> f64 {
         let accelerations = self.accelerations(model, self.state());
-        let Some(port) = model.ports.get(link.port) else {
-            return 0.0;
-        };
+        let Some(port) = model.ports.get(link.port) else { return 0.0 };
         let pairs = port.shape.iter().zip(&accelerations);
         -link.sense * pairs.map(|(b, acceleration)| b * acceleration).sum::<f64>()
     }
@@ -256,9 +244,7 @@ impl Motion {
         let Some((link, along, dense)) = model.friction().and_then(|(index, _)| self.seen(model, index)) else {
             return (0.0, slip);
         };
-        let Some((dense, y)) = dense else {
-            return (along.force, slip);
-        };
+        let Some((dense, y)) = dense else { return (along.force, slip) };
         let (closed, slips) = (state.links[CONTACT].closed, slip.phase != Phase::Stick);
         let at = |values| value_at(values, y);
         if !closed || slips {
@@ -276,12 +262,8 @@ impl Motion {
     pub(crate) fn friction_rates(&self, model: &Model) -> (f64, Slip) {
         let state = self.state();
         let none = (0.0, Slip::default());
-        let (Some((index, friction)), Some(law)) = (model.friction(), model.law.power()) else {
-            return none;
-        };
-        let Some((link, along, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else {
-            return none;
-        };
+        let (Some((index, friction)), Some(law)) = (model.friction(), model.law.power()) else { return none };
+        let Some((link, along, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else { return none };
         let contact = &state.links[CONTACT];
         let of_slip = |y: f64| value_and_slope(&self.dense.slip.slip, y).1 / self.length();
         if !contact.closed {
@@ -408,9 +390,7 @@ impl Motion {
         let circuits = &self.state().circuits;
         let links = &self.dense.links;
         let passes = |now: f64| links.iter().any(|dense| dense.passages.until(now).next().is_some());
-        let Some(now) = self.inside().filter(|now| passes(*now)) else {
-            return circuits.of(circuit);
-        };
+        let Some(now) = self.inside().filter(|now| passes(*now)) else { return circuits.of(circuit) };
         let mut circuits = *circuits;
         let passages = links.each_ref().map(|dense| &dense.passages);
         circuits.pass(&model.links, &passages, (self.end.time, self.length()), now);

@@ -60,9 +60,7 @@ impl Recorder<'_> {
         let read = self.reads_before(target.time) || self.dense.is_some() && second.is_some();
         let mut is_course = true;
         for (index, (link, at)) in model.links.iter().zip(&mut state.links).enumerate() {
-            let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else {
-                continue;
-            };
+            let (Some(nodes), Some(passages)) = (trial.links.get(index), passages.get(index)) else { continue };
             // The mean force of a step of the fallback, which may be mere rounding: extremes are then those of its ends.
             let is_constant = nodes.forces.windows(2).all(|pair| matches!(pair, [a, b] if a == b));
             is_course &= !(is_constant && at.closed);

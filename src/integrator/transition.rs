@@ -10,13 +10,9 @@ use crate::state::State;
 
 /// Opens or closes a contact at the instant of the state. Short steps begin anew.
 pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut Events) {
-    let (Some(link), time) = (model.links.get(index), state.time) else {
-        return;
-    };
+    let (Some(link), time) = (model.links.get(index), state.time) else { return };
     state.force_error.begin(&model.slowest, link.port);
-    let Some(at) = state.links.get_mut(index) else {
-        return;
-    };
+    let Some(at) = state.links.get_mut(index) else { return };
     at.closed = !at.closed;
     let closed = at.closed;
     log.record(log::Event { time, closes: closed, link: index });
@@ -55,9 +51,7 @@ pub(crate) fn set_velocities(model: &Model, state: &mut State, drive: &Drive, lo
     }
     state.velocities = drive.velocities;
     for (index, link) in model.links.iter().enumerate() {
-        let Some(at) = state.links.get_mut(index) else {
-            continue;
-        };
+        let Some(at) = state.links.get_mut(index) else { continue };
         let jump = link.offset(&jumps);
         at.rate += jump;
         if jump == 0.0 || link.contact().is_none() {
@@ -108,12 +102,8 @@ pub(crate) fn step_after_jump(model: &Model, state: &State) -> f64 {
 /// approximates well: the step is so short that its error moves the force by less than the error allowed per step.
 fn first_closed_step(model: &Model, state: &State, index: usize) -> f64 {
     let mut h = model.first_step(state.time);
-    let (Some(link), Some(at)) = (model.links.get(index), state.links.get(index)) else {
-        return h;
-    };
-    let (Some(law), d, speed) = (link.contact(), link.approach + at.approach, at.rate.abs()) else {
-        return h;
-    };
+    let (Some(link), Some(at)) = (model.links.get(index), state.links.get(index)) else { return h };
+    let (Some(law), d, speed) = (link.contact(), link.approach + at.approach, at.rate.abs()) else { return h };
     let mobility = model.mobility_of(link.port);
     for _ in 0..40 {
         let branch = law.closed_branch(d + speed * h, at.rate);

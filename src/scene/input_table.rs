@@ -128,18 +128,14 @@ impl InputTable {
     /// of a recorder.
     fn passed_over(&self, time: f64, size: f64) -> Option<f64> {
         let first = self.times.partition_point(|row| *row <= time + 0.01 * size);
-        let [row, next] = self.times.get(first..first + 2)? else {
-            return None;
-        };
+        let [row, next] = self.times.get(first..first + 2)? else { return None };
         (*next < time + 0.99 * size).then_some(next - row)
     }
 
     fn value(&self, values: &[f64], time: f64) -> f64 {
         let mut rows = self.times.iter().zip(values);
         let after = self.times.partition_point(|row| *row <= time);
-        let Some(before) = after.checked_sub(1) else {
-            return rows.next().map_or(0.0, |(_, value)| *value);
-        };
+        let Some(before) = after.checked_sub(1) else { return rows.next().map_or(0.0, |(_, value)| *value) };
         let before = rows.nth(before);
         match (before, rows.next()) {
             (Some((t0, v0)), Some((t1, v1))) => (v1 - v0) / (t1 - t0) * (time - t0) + v0,

@@ -241,9 +241,7 @@ fn moved_in(scenes: impl Iterator<Item = Values>) -> Pairs {
         for known in &VARIABLES {
             for other in base.others(known) {
                 let mut changed = base.clone();
-                let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else {
-                    continue;
-                };
+                let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else { continue };
                 let moved = before.iter().filter(|(name, bits)| after[*name] != **bits);
                 found.extend(moved.map(|(unknown, _)| (*unknown, known.name)));
             }

@@ -147,9 +147,7 @@ impl Instance {
         self.state = State::StepComplete;
         // Also of a state saved before: the run begins anew.
         self.told.of_error = false;
-        let Some(simulation) = &self.simulation else {
-            return Ok(());
-        };
+        let Some(simulation) = &self.simulation else { return Ok(()) };
         if self.logger.debugs() {
             report::model(&self.logger, simulation.model());
         }

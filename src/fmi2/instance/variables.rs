@@ -130,9 +130,7 @@ impl Instance {
     pub(in crate::fmi2) fn string(&mut self, reference: u32) -> Result<&CStr, Failure> {
         let variable = self.typed("String", reference)?;
         let wrong = || wrong_type("String", variable);
-        let Group::StringParameter(parameter) = variable.group else {
-            return Err(wrong());
-        };
+        let Group::StringParameter(parameter) = variable.group else { return Err(wrong()) };
         let value = self.scene.string(parameter);
         let text = self.texts.get_mut(parameter as usize).ok_or_else(wrong)?;
         if text.to_bytes() != value.as_bytes() {
@@ -152,9 +150,7 @@ impl Instance {
         let (mut inputs, mut ignored) = (self.inputs, None);
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let variable = find("Real", reference)?;
-            let Group::RealInput(input) = variable.group else {
-                return Err(no_derivative(variable, "inputs"));
-            };
+            let Group::RealInput(input) = variable.group else { return Err(no_derivative(variable, "inputs")) };
             if order > 1 {
                 ignored = ignored.or(Some((variable.name, order)));
                 continue;
@@ -186,9 +182,7 @@ impl Instance {
 
 /// A Real that stands for an integer, a choice or a Boolean as that: by its text, which fractions and what is too large do not survive.
 fn discrete<'a>(variable: &Variable, value: Value<'a>) -> Result<Value<'a>, SceneError> {
-    let Value::Real(real) = value else {
-        return Ok(value);
-    };
+    let Value::Real(real) = value else { return Ok(value) };
     let whole = || real.to_string().parse().ok();
     let (found, allowed) = match variable.group {
         Group::IntegerParameter(_) | Group::EnumerationParameter(_) => (whole().map(Value::Integer), "a whole number"),

@@ -193,9 +193,7 @@ pub(super) fn estimate_in_flight<const S: usize>(
     let missed_velocity = free.missed_mean * step.length;
     let (mut at_end, mut inside) = (0.0_f64, 0.0_f64);
     for link in &model.links {
-        let Some(law) = link.contact() else {
-            continue;
-        };
+        let Some(law) = link.contact() else { continue };
         let rows = free.axial.as_ref().unwrap_or(&step.acceleration(link.port).defect);
         let defect = if free.axial.is_some() { 1.0 } else { free.start_defect.abs() };
         let most = |values: &Nodal<S>| greatest(values) * defect;

@@ -228,9 +228,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     fn residuals(&self, forces: &Stacked<S, L>, motions: &[NodalMotion<S>; L]) -> (Stacked<S, L>, Laws<S, L>) {
         let mut residuals = *forces;
         let mut laws = Laws { stiffness: [[0.0; S]; L], damping: [[0.0; S]; L], coupling: [[0.0; S]; L] };
-        let [contact, ..] = self.model.links.as_slice() else {
-            return (residuals, laws);
-        };
+        let [contact, ..] = self.model.links.as_slice() else { return (residuals, laws) };
         for a in 0..in_use::<L>(self.unknowns.count) {
             let link = &self.model.links[self.unknowns.get(a).link];
             let motion = &motions[a];
@@ -245,9 +243,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                 }
                 // It comes after its contact.
                 LinkLaw::Friction(friction) if L > 1 && a > 0 => {
-                    let Some(law) = contact.contact().and_then(Law::power) else {
-                        continue;
-                    };
+                    let Some(law) = contact.contact().and_then(Law::power) else { continue };
                     for k in 0..S {
                         let z = -motion.d[k] - self.state.slip.way;
                         let d = contact.approach + motions[a - 1].d[k];

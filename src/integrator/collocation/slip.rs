@@ -87,9 +87,7 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
     let (contact, along) = (&links[CONTACT], &links[rubbing]);
     *slip = SlipNodes { deflections: [0.0; S], rates: [0.0; S], fading: 0.0 };
     let start = -state.links[rubbing].approach - state.slip.way;
-    let (true, Some(law)) = (state.links[CONTACT].closed, model.law.power()) else {
-        return;
-    };
+    let (true, Some(law)) = (state.links[CONTACT].closed, model.law.power()) else { return };
     let Some(sign) = state.slip.phase.sign() else {
         slip.deflections = along.approaches.map(|approach| -approach - state.slip.way);
         return;
@@ -100,9 +98,7 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
         let d = model.links[CONTACT].approach + d;
         *ahead = friction.limit_deflection(law, sign, d, *rate) - start;
     }
-    let Some(following) = step.following.first_chunk::<S>() else {
-        return;
-    };
+    let Some(following) = step.following.first_chunk::<S>() else { return };
     *slip = tends::<S, A>(collocation, following, (start, &ahead), (step.length, law.damping));
     for (slip, rate) in slip.rates.iter_mut().zip(&along.rates) {
         *slip = -rate - *slip;

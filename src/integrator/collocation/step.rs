@@ -243,9 +243,7 @@ impl<const S: usize> Step<'_, S> {
         trial: &mut Trial<S>,
         equations: &'e mut Equations<S, L>,
     ) -> Option<Solution<'e, S, L>> {
-        let Source::Laws(newton) = self.source else {
-            return None;
-        };
+        let Source::Laws(newton) = self.source else { return None };
         let mut motions = [NodalMotion::ZERO; L];
         let mut forces: Stacked<S, L> = [[0.0; S]; L];
         for a in 0..in_use::<L>(self.unknowns.count) {

@@ -192,9 +192,7 @@ impl<const S: usize> Store<S> {
             self.add(collocation);
         }
         let slot = slot(length, collocation.variable);
-        let Some(place) = self.of_slot.get(slot).filter(|_| recurring) else {
-            return 0;
-        };
+        let Some(place) = self.of_slot.get(slot).filter(|_| recurring) else { return 0 };
         if *place > 0 {
             return usize::from(*place);
         }

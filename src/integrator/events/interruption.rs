@@ -26,9 +26,7 @@ impl<const S: usize> Locator<'_, S> {
     /// is not accurate, the law gives the force at the exact motion under it.
     fn add_passages(&mut self, index: usize, must: bool, passages: &mut Places) -> bool {
         let whole = self.whole;
-        let Some((link, start)) = self.link(index).filter(|(_, start)| start.closed) else {
-            return true;
-        };
+        let Some((link, start)) = self.link(index).filter(|(_, start)| start.closed) else { return true };
         let (Some(criterion), Some(law), Some(nodes)) = (&link.criterion, link.contact(), whole.trial.links.get(index))
         else {
             return true;

@@ -138,9 +138,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// How far the contact is beyond the change to a phase, at the instant looked at last, N: the trial force beyond the limit, or
     /// the friction force that the slip velocity takes.
     fn beyond(&self, end: &Instant, phase: Phase) -> f64 {
-        let Some(rubbing) = self.rubbing() else {
-            return 0.0;
-        };
+        let Some(rubbing) = self.rubbing() else { return 0.0 };
         let Rubbing { contact: (contact, _), along: (_, along_at), index, friction, law } = rubbing;
         let whole = self.whole;
         let along = self.whole.link(index, end.at, &self.search.modes);

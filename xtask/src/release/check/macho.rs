@@ -100,9 +100,7 @@ fn pages_match(bytes: &[u8], signature: usize) -> Option<bool> {
     let directory = parts.into_iter().find(|part| word(*part) == Some(DIRECTORY as usize))?;
     let [digests, _, count, limit] = [16, 20, 28, 32].map(|field| word(directory + field));
     let (digests, limit) = (directory + digests?, limit?);
-    let &[length, kind, _, page] = bytes.get(directory + 36..directory + 40)? else {
-        return None;
-    };
+    let &[length, kind, _, page] = bytes.get(directory + 36..directory + 40)? else { return None };
     let pages: Vec<_> = bytes.get(..limit)?.chunks(1_usize.checked_shl(page.into())?).collect();
     let matches = pages.iter().enumerate().all(|(number, page)| {
         let at = digests + number * usize::from(length);
