@@ -50,7 +50,7 @@ pub struct ForceError {
 }
 
 /// A number for each mode of a deviation.
-type Lanes = [f64; MODES];
+pub(crate) type Lanes = [f64; MODES];
 
 /// A deviation of the motion: its modes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -72,15 +72,6 @@ pub(crate) struct Slowest {
     pub(crate) shapes: [Lanes; MAX_PORTS],
     /// The size of a deviation that a unit impulse at each port makes, kg^(-1/2).
     pub(crate) by_impulse: [f64; MAX_PORTS],
-}
-
-/// Free motion of the modes of a deviation over a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct FreeMotions {
-    pub(crate) q_from_q: Lanes,
-    pub(crate) q_from_v: Lanes,
-    pub(crate) v_from_q: Lanes,
-    pub(crate) v_from_v: Lanes,
 }
 
 impl Slowest {
@@ -107,14 +98,10 @@ impl Slowest {
     }
 
     /// Their free motion, of each by its index and itself.
-    pub(crate) fn free(&self, of: impl Fn(usize, &Mode) -> FreeMotion) -> FreeMotions {
-        let mut motions = FreeMotions::default();
-        let FreeMotions { q_from_q, q_from_v, v_from_q, v_from_v } = &mut motions;
-        let lanes = q_from_q.iter_mut().zip(q_from_v).zip(v_from_q).zip(v_from_v);
-        for ((i, mode), (((q_from_q, q_from_v), v_from_q), v_from_v)) in self.modes.iter().zip(lanes) {
-            let free = of(*i, mode);
-            (*q_from_q, *q_from_v) = (free.q_from_q, free.q_from_v);
-            (*v_from_q, *v_from_v) = (free.v_from_q, free.v_from_v);
+    pub(crate) fn free(&self, of: impl Fn(usize, &Mode) -> FreeMotion) -> FreeMotion<Lanes> {
+        let mut motions = FreeMotion::default();
+        for (lane, (i, mode)) in self.modes.iter().enumerate() {
+            motions.set(lane, &of(*i, mode));
         }
         motions
     }

@@ -36,12 +36,13 @@ impl DensePropagator {
         for (k, node) in nodes.iter().enumerate() {
             self.whole.fill(node * length, &closed_loop.oscillators, generator);
             let whole = &self.whole;
+            let motions = &whole.free;
             for (quantity, row) in closed_loop.tip.iter().enumerate() {
                 let (from_x, from_v) = self.free.split_at_mut(count);
                 for (j, (from_x, from_v)) in from_x.iter_mut().zip(from_v).enumerate() {
                     let (x, v) = (row[j], row[count + j]);
-                    from_x[quantity][k] = x * whole.x_from_x[j] + v * whole.v_from_x[j];
-                    from_v[quantity][k] = x * whole.x_from_v[j] + v * whole.v_from_v[j];
+                    from_x[quantity][k] = x * motions.q_from_q[j] + v * motions.v_from_q[j];
+                    from_v[quantity][k] = x * motions.q_from_v[j] + v * motions.v_from_v[j];
                 }
                 for (generated, driven) in self.generated.iter_mut().zip([&whole.from_sine, &whole.from_cosine]) {
                     generated[quantity][k] = row.iter().zip(driven).map(|(row, driven)| row * driven).sum();

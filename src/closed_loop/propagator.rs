@@ -19,11 +19,8 @@ use crate::math::free_motion::FreeMotion;
 
 #[derive(Clone, Debug, Zeroable)]
 pub struct Propagator {
-    /// Free motion of each oscillator: displacement and velocity at the end per displacement and velocity at the start.
-    pub(crate) x_from_x: [f64; MAX_MODES],
-    pub(crate) x_from_v: [f64; MAX_MODES],
-    pub(crate) v_from_x: [f64; MAX_MODES],
-    pub(crate) v_from_v: [f64; MAX_MODES],
+    /// Free motion of each oscillator.
+    pub(crate) free: FreeMotion<[f64; MAX_MODES]>,
     /// Motion from rest under the generator with unit amplitude, per sine and per cosine of its phase at the start.
     pub(crate) from_sine: Coordinates,
     pub(crate) from_cosine: Coordinates,
@@ -37,12 +34,9 @@ impl Propagator {
             let turn = Complex::from_polar(1.0, TAU * turned(frequency, length));
             (frequency, turn)
         });
-        let from_x = self.x_from_x.iter_mut().zip(&mut self.v_from_x);
-        let from_v = self.x_from_v.iter_mut().zip(&mut self.v_from_v);
-        for (n, (oscillator, (from_x, from_v))) in oscillators.iter().zip(from_x.zip(from_v)).enumerate() {
+        for (n, oscillator) in oscillators.iter().enumerate() {
             let free = FreeMotion::new(oscillator.omega_squared, oscillator.damping, length);
-            (*from_x.0, *from_x.1) = (free.q_from_q, free.v_from_q);
-            (*from_v.0, *from_v.1) = (free.q_from_v, free.v_from_v);
+            self.free.set(n, &free);
             if let Some((frequency, turn)) = generated {
                 let driven = oscillator.loaded(oscillator.driven_from_rest(&free, frequency, turn, length));
                 set(&mut self.from_sine, n, count, driven.map(|motion| motion.re));

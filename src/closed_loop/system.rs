@@ -19,6 +19,7 @@ use crate::closed_loop::problem::Problem;
 use crate::closed_loop::propagator::Propagator;
 use crate::contact::linear::Linear;
 use crate::excitation::generator::Generator;
+use crate::math::free_motion::FreeMotion;
 use crate::math::simd::{Arithmetic, Simd, compiled_for};
 use crate::scene::Scene;
 
@@ -248,9 +249,8 @@ impl ClosedLoop {
         let (x, v) = free.split_at(count);
         let mut moved = [0.0; 2 * MAX_MODES];
         let (x_end, v_end) = moved.split_at_mut(count);
-        for (ends, from_x, from_v) in
-            [(x_end, &propagator.x_from_x, &propagator.x_from_v), (v_end, &propagator.v_from_x, &propagator.v_from_v)]
-        {
+        let FreeMotion { q_from_q, q_from_v, v_from_q, v_from_v } = &propagator.free;
+        for (ends, from_x, from_v) in [(x_end, q_from_q, q_from_v), (v_end, v_from_q, v_from_v)] {
             let steps = from_x.iter().zip(from_v);
             for (((end, x), v), (from_x, from_v)) in ends.iter_mut().zip(x).zip(v).zip(steps) {
                 *end = from_x * x + from_v * v;

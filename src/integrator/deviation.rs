@@ -7,9 +7,10 @@
 
 use std::mem;
 
-use crate::force_error::{Deviation, ForceError, FreeMotions, MODES, Slowest};
+use crate::force_error::{Deviation, ForceError, Lanes, MODES, Slowest};
 use crate::integrator::collocation::newton::Tangent;
 use crate::link::{CONTACT, Link, MAX_LINKS};
+use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{add_products, dot, scaled};
 use crate::math::simd::Arithmetic;
 
@@ -60,15 +61,10 @@ impl ForceError {
     pub(crate) fn advance<A: Arithmetic>(
         &mut self,
         slowest: &Slowest,
-        free: &FreeMotions,
+        free: &FreeMotion<Lanes>,
         at_work: impl Iterator<Item = (usize, usize, Tangent)>,
     ) {
-        let Deviation { q, v } = self.deviation;
-        let (mut next_q, mut next_v) = ([0.0; MODES], [0.0; MODES]);
-        add_products::<MODES, A>(&mut next_q, &free.q_from_q, &q);
-        add_products::<MODES, A>(&mut next_q, &free.q_from_v, &v);
-        add_products::<MODES, A>(&mut next_v, &free.v_from_q, &q);
-        add_products::<MODES, A>(&mut next_v, &free.v_from_v, &v);
+        let (mut next_q, mut next_v) = free.moved::<A>(&self.deviation.q, &self.deviation.v);
         // What a constant force does to a mode in which it has part 1.
         let lanes = free.q_from_q.iter().zip(&free.q_from_v).zip(&slowest.omega_squared);
         let mut by_force = [0.0; MODES];
@@ -120,7 +116,6 @@ mod tests {
     use super::*;
     use crate::beam::mode::Mode;
     use crate::link::Port;
-    use crate::math::free_motion::FreeMotion;
     use crate::math::simd::Separate;
 
     /// Once it were not a number, every relay would be announced from then on, and its saved state refused.

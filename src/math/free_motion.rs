@@ -2,20 +2,23 @@
 
 use std::array;
 
+use bytemuck::Zeroable;
+
 use crate::math::elementary::{LARGEST_ANGLE, exp, sin_cos};
+use crate::math::nodal::add_products;
 use crate::math::simd::Arithmetic;
 
-/// Free motion: the state `(q, v)` after a time, per unit of the initial state.
-#[derive(Clone, Copy, Debug)]
-pub struct FreeMotion {
+/// Free motion: the state `(q, v)` after a time, per unit of the initial state; of an oscillator, or of several by vectors.
+#[derive(Clone, Copy, Debug, Default, Zeroable)]
+pub struct FreeMotion<T = f64> {
     /// q per initial q.
-    pub q_from_q: f64,
+    pub q_from_q: T,
     /// q per initial v (the impulse response G), s.
-    pub q_from_v: f64,
+    pub q_from_v: T,
     /// v per initial q, 1/s.
-    pub v_from_q: f64,
+    pub v_from_q: T,
     /// v per initial v.
-    pub v_from_v: f64,
+    pub v_from_v: T,
 }
 
 /// Exponent from which on what decays counts as zero: far below rounding, and slow to compute with once it is not normal.
@@ -136,6 +139,38 @@ impl FreeMotion {
             };
         }
         motions
+    }
+}
+
+impl<const N: usize> FreeMotion<[f64; N]> {
+    /// That of one of them.
+    pub fn get(&self, n: usize) -> Option<FreeMotion> {
+        let Self { q_from_q, q_from_v, v_from_q, v_from_v } = self;
+        let of = |values: &[f64; N]| values.get(n).copied();
+        let (q_from_q, q_from_v) = (of(q_from_q)?, of(q_from_v)?);
+        Some(FreeMotion { q_from_q, q_from_v, v_from_q: of(v_from_q)?, v_from_v: of(v_from_v)? })
+    }
+
+    /// Sets that of one of them.
+    pub fn set(&mut self, n: usize, one: &FreeMotion) {
+        let Self { q_from_q, q_from_v, v_from_q, v_from_v } = self;
+        let of_one = [one.q_from_q, one.q_from_v, one.v_from_q, one.v_from_v];
+        for (values, value) in [q_from_q, q_from_v, v_from_q, v_from_v].into_iter().zip(of_one) {
+            if let Some(entry) = values.get_mut(n) {
+                *entry = value;
+            }
+        }
+    }
+
+    /// Their states after these.
+    #[inline(always)]
+    pub fn moved<A: Arithmetic>(&self, q: &[f64; N], v: &[f64; N]) -> ([f64; N], [f64; N]) {
+        let (mut next_q, mut next_v) = ([0.0; N], [0.0; N]);
+        add_products::<N, A>(&mut next_q, &self.q_from_q, q);
+        add_products::<N, A>(&mut next_q, &self.q_from_v, v);
+        add_products::<N, A>(&mut next_v, &self.v_from_q, q);
+        add_products::<N, A>(&mut next_v, &self.v_from_v, v);
+        (next_q, next_v)
     }
 }
 

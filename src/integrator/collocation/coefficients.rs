@@ -32,13 +32,7 @@ pub(super) type Lanes = [f64; LANES];
 #[derive(Clone, Copy, Debug, Zeroable)]
 pub struct EndGroup<const S: usize> {
     /// q and v at the end per initial q and v.
-    pub(super) q_from_q: Lanes,
-    /// See [`EndGroup::q_from_q`].
-    pub(super) q_from_v: Lanes,
-    /// See [`EndGroup::q_from_q`].
-    pub(super) v_from_q: Lanes,
-    /// See [`EndGroup::q_from_q`].
-    pub(super) v_from_v: Lanes,
+    pub(super) free: FreeMotion<Lanes>,
     /// q and v at the end per load at each node.
     pub(super) q_from_load: [Lanes; S],
     /// See [`EndGroup::q_from_load`].
@@ -69,10 +63,7 @@ impl<const S: usize> EndGroup<S> {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "a mode of the group")]
     pub(super) fn set(&mut self, lane: usize, free: &FreeMotion, load: &Pair<Nodal<S>>) {
-        self.q_from_q[lane] = free.q_from_q;
-        self.q_from_v[lane] = free.q_from_v;
-        self.v_from_q[lane] = free.v_from_q;
-        self.v_from_v[lane] = free.v_from_v;
+        self.free.set(lane, free);
         for (row, value) in self.q_from_load.iter_mut().zip(&load.q) {
             row[lane] = *value;
         }
@@ -188,13 +179,7 @@ impl<'a, const S: usize> StepCoefficients<'a, S> {
 
     /// The free motion of a mode.
     pub fn free(&self, mode: usize) -> Option<FreeMotion> {
-        let (group, lane) = (self.end.get(mode / LANES)?, mode % LANES);
-        Some(FreeMotion {
-            q_from_q: *group.q_from_q.get(lane)?,
-            q_from_v: *group.q_from_v.get(lane)?,
-            v_from_q: *group.v_from_q.get(lane)?,
-            v_from_v: *group.v_from_v.get(lane)?,
-        })
+        self.end.get(mode / LANES)?.free.get(mode % LANES)
     }
 
     /// The response of a port to a base acceleration, which loads the modes with their `participation`.

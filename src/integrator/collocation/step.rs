@@ -387,11 +387,7 @@ impl LaneEnd {
         for ((q, v), start) in start_q.iter_mut().zip(&mut start_v).zip(starts) {
             (*q, *v) = (start.q, start.v);
         }
-        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-        add_products::<LANES, A>(&mut q, &rows.q_from_q, &start_q);
-        add_products::<LANES, A>(&mut q, &rows.q_from_v, &start_v);
-        add_products::<LANES, A>(&mut v, &rows.v_from_q, &start_q);
-        add_products::<LANES, A>(&mut v, &rows.v_from_v, &start_v);
+        let (q, v) = rows.free.moved::<A>(&start_q, &start_v);
         Self { q, v }
     }
 
