@@ -12,6 +12,7 @@ use std::f64::consts::TAU;
 use bytemuck::zeroed_box;
 
 use crate::excitation::waveform::{Accelerations, Window};
+use crate::math::elementary::sin_cos;
 use crate::math::nodal::{Nodal, add, add_products};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 use crate::scene::Excitation;
@@ -218,54 +219,23 @@ fn rounded(value: f64) -> f64 {
     (value + SHIFT) - SHIFT
 }
 
-/// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz). Branch-free, so that the loop
-/// is vectorised.
+/// Sines and cosines of the phases (turns) after `tau` seconds at the frequencies (Hz).
 #[inline(always)]
 fn set_phasors<A: Arithmetic>([sines, cosines]: &mut [Each; 2], [high, low]: &[Each; 2], tau: f64, phases: &Each) {
     let [tau_high, tau_low] = split(tau);
-    let phasors = sines.iter_mut().zip(cosines);
-    for ((sine, cosine), ((high, low), phase)) in phasors.zip(high.iter().zip(low).zip(phases)) {
-        // Whole turns are removed before rounding, as in `waveform::turned`.
-        let product = (high + low) * tau;
-        let lost = ((high * tau_high - product) + high * tau_low + low * tau_high) + low * tau_low;
-        let turns = (product - rounded(product)) + (lost + phase);
-        (*sine, *cosine) = unit::<A>(turns);
+    let phasors = sines.as_chunks_mut::<LANES>().0.iter_mut().zip(cosines.as_chunks_mut::<LANES>().0);
+    let frequencies = high.as_chunks::<LANES>().0.iter().zip(low.as_chunks::<LANES>().0);
+    for ((sines, cosines), ((high, low), phases)) in phasors.zip(frequencies.zip(phases.as_chunks::<LANES>().0)) {
+        let mut angles = [0.0; LANES];
+        for (angle, ((high, low), phase)) in angles.iter_mut().zip(high.iter().zip(low).zip(phases)) {
+            // Whole turns are removed before rounding, as in `waveform::turned`.
+            let product = (high + low) * tau;
+            let lost = ((high * tau_high - product) + high * tau_low + low * tau_high) + low * tau_low;
+            let turns = (product - rounded(product)) + (lost + phase);
+            *angle = TAU * (turns - rounded(turns));
+        }
+        (*sines, *cosines) = sin_cos::<LANES, A>(&angles);
     }
-}
-
-/// Terms of the power series of sine and cosine in an eighth of a turn: the next one is below 3e-18.
-const POWERS: usize = 9;
-
-/// `1 / n!`.
-#[expect(clippy::indexing_slicing, reason = "the indices are those of the table")]
-const INVERSE_FACTORIALS: [f64; 2 * POWERS] = {
-    let mut values = [1.0; 2 * POWERS];
-    let mut n = 1;
-    while n < 2 * POWERS {
-        values[n] = values[n - 1] / n as f64;
-        n += 1;
-    }
-    values
-};
-
-/// Sine and cosine of an angle in turns: the power series in the eighth of a turn around the nearest quarter.
-#[expect(clippy::indexing_slicing, reason = "the indices are those of the table")]
-#[inline(always)]
-fn unit<A: Arithmetic>(turns: f64) -> (f64, f64) {
-    let turns = turns - rounded(turns);
-    let quarters = rounded(4.0 * turns);
-    let angle = TAU * A::mul_add(-0.25, quarters, turns);
-    let z = -angle * angle;
-    let (mut sin, mut cos) = (0.0, 0.0);
-    for n in (0..POWERS).rev() {
-        sin = A::mul_add(sin, z, INVERSE_FACTORIALS[2 * n + 1]);
-        cos = A::mul_add(cos, z, INVERSE_FACTORIALS[2 * n]);
-    }
-    sin *= angle;
-    // Sine and cosine of the quarters: -2 to 2.
-    let cos_quarters = 1.0 - quarters.abs();
-    let sin_quarters = quarters * (2.0 - quarters.abs());
-    (sin * cos_quarters + cos * sin_quarters, cos * cos_quarters - sin * sin_quarters)
 }
 
 /// SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014): the same numbers on every platform.
@@ -290,7 +260,6 @@ impl SplitMix64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::simd::Fused;
 
     #[test]
     fn numbers_are_those_of_the_published_generator() {
@@ -299,18 +268,6 @@ mod tests {
         let mut generator = SplitMix64(1_234_567);
         for expected in [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423] {
             assert_eq!(generator.next(), expected);
-        }
-    }
-
-    #[test]
-    fn sine_and_cosine_are_those_of_the_library() {
-        for k in -4000..4000 {
-            let turns = f64::from(k) * 1.234_567e-3;
-            let (sin, cos) = (TAU * (turns - turns.round())).sin_cos();
-            for found in [unit::<Separate>(turns), unit::<Fused>(turns)] {
-                // A few roundings of numbers up to 1, and of the angle up to pi.
-                assert!((found.0 - sin).abs().max((found.1 - cos).abs()) < 1e-15, "{turns} {found:?}");
-            }
         }
     }
 }
