@@ -1,0 +1,3 @@
+//! Nothing: cargo then builds what stands under `[build-dependencies]`.
+
+fn main() {}
