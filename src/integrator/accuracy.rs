@@ -1,12 +1,14 @@
 //! How accurate a trial is where it is read inside.
 
+use std::iter;
+
 use crate::integrator::collocation::error::of_rounding;
 use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::shapes::Variable;
-use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING};
+use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING, LOOKED};
 use crate::link::CONTACT;
 use crate::math::nodal::{Nodal, end, greatest};
-use crate::math::prediction::value_and_slope;
+use crate::math::prediction::{value_and_slope, value_at};
 
 impl<const S: usize> Whole<'_, S> {
     /// Error allowed in what is read inside the trial, N: relative to the forces in it, where they are larger than the force scale. Nothing
@@ -52,6 +54,40 @@ impl<const S: usize> Whole<'_, S> {
         error.min(swings.fold(0.0, f64::max))
     }
 
+    /// What the forces of closed contacts differ from those of their laws where they turn, N, at the motion that also has the velocities
+    /// at the nodes: polynomials through fewer nodes do not show how a law bends near zero force, and a fast vibration may be at its
+    /// zero at all of them. Not looked at where next terms are far below the error `allowed`.
+    pub(crate) fn unlawful(&self, allowed: f64) -> f64 {
+        let Self { model, state, collocation, trial, length, .. } = *self;
+        if trial.next_terms < LOOKED * allowed || collocation.variable == Variable::Root {
+            return 0.0;
+        }
+        let mut most = 0.0_f64;
+        for ((link, at), nodes) in model.links.iter().zip(&state.links).zip(&trial.links) {
+            let Some(law) = link.contact().filter(|_| at.closed) else { continue };
+            let through = |start: f64, values: &Nodal<S>| collocation.through(model.simd, start, values);
+            for (x, _) in turns(at.force - link.force, &collocation.places, &nodes.forces) {
+                let approach = through(at.approach, &nodes.approaches);
+                let wrong = |(x, rate): (f64, f64)| rate * length - value_and_slope(&approach, x - 1.0).1;
+                let (mut before, mut after) = ((0.0, at.rate), (0.0, at.rate));
+                for node in collocation.places.iter().copied().zip(nodes.rates) {
+                    (before, after) = (after, node);
+                    if node.0 > x {
+                        break;
+                    }
+                }
+                let span = after.0 - before.0;
+                let part = (x - before.0) / span;
+                let tangents = (1.0 - part) * wrong(before) - part * wrong(after);
+                let d = value_at(&approach, x - 1.0) + span * part * (1.0 - part) * tangents;
+                let rate = value_at(&through(at.rate, &nodes.rates), x - 1.0);
+                let force = value_at(&through(at.force - link.force, &nodes.forces), x - 1.0);
+                most = most.max((link.force + force - law.closed_branch(link.approach + d, rate).force).abs());
+            }
+        }
+        most
+    }
+
     /// Error of the indentation between the nodes of the trial as it would be read there, as the force that makes it of the spring, N.
     /// The polynomial through the indentations has slopes at the nodes that differ from the velocities there; between two nodes its
     /// error is the cubic with these slopes.
@@ -86,26 +122,25 @@ const BETWEEN_NODES: f64 = 0.155;
 const FADED: f64 = 0.386;
 
 /// How far a force that rises and falls from `start` (N) over the nodes of a step is from where it turns, N; 0 of one that does not.
-/// It turns where a parabola through three neighbours does, which may be beyond all of them.
 fn swing<const S: usize>(start: f64, places: &Nodal<S>, forces: &Nodal<S>) -> f64 {
     let end = end(forces);
-    let mut most = 0.0_f64;
-    let (mut before, mut middle) = (None, (0.0, start));
-    for after in places.iter().copied().zip(forces.iter().copied()) {
-        if let Some(before) = before {
-            let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
-            let (left, right) = (slope(before, middle), slope(middle, after));
-            let curvature = (right - left) / (after.0 - before.0);
-            let at_start = left - curvature * (middle.0 - before.0);
-            let place = -at_start / (2.0 * curvature);
-            if (0.0..=after.0 - before.0).contains(&place) {
-                let turn = before.1 + 0.5 * at_start * place;
-                most = most.max((turn - start).abs().min((turn - end).abs()));
-            }
-        }
-        (before, middle) = (Some(middle), after);
-    }
-    most
+    turns(start, places, forces).fold(0.0, |most, (_, turn)| most.max((turn - start).abs().min((turn - end).abs())))
+}
+
+/// Where such a force turns, 0 to 1, and its value there, N: where a parabola through three neighbours does, which may be beyond all of
+/// them.
+fn turns<const S: usize>(start: f64, places: &Nodal<S>, forces: &Nodal<S>) -> impl Iterator<Item = (f64, f64)> {
+    let points = || iter::once((0.0, start)).chain(places.iter().copied().zip(forces.iter().copied()));
+    let triples = points().zip(points().skip(1)).zip(points().skip(2));
+    triples.filter_map(|((before, middle), after)| {
+        let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+        let (left, right) = (slope(before, middle), slope(middle, after));
+        let curvature = (right - left) / (after.0 - before.0);
+        let at_start = left - curvature * (middle.0 - before.0);
+        let place = -at_start / (2.0 * curvature);
+        let is_inside = (0.0..=after.0 - before.0).contains(&place);
+        is_inside.then_some((before.0 + place, before.1 + 0.5 * at_start * place))
+    })
 }
 
 #[cfg(test)]

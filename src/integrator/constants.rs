@@ -65,13 +65,6 @@ pub const SLOWEST_DECAY: f64 = 1.0 / 3.0;
 /// microseconds).
 pub const KINKED: f64 = 0.015;
 
-/// Factor on the estimated error just after a closing, 1, where steps grow with the time since. Pinned: ÷ 10,
-/// `relays_that_once_exceeded_the_tolerance_keep_it`.
-pub const AFTER_BLOW: f64 = 10.0;
-
-/// Time since a closing up to which that holds, steps. Observed. Pinned: 0, `relays_that_once_exceeded_the_tolerance_keep_it`.
-pub const NEAR_BLOW: f64 = 3.0;
-
 /// Factor on the error that the contact's damper takes back, where a step is accepted or rejected, 1: the velocity at its
 /// start is wrong by what the step before has left for the damper, and no shorter step has less of that. Pinned: ÷ 2, hard
 /// case "Spring without damping".
@@ -81,6 +74,10 @@ pub const INHERITED: f64 = 0.25;
 /// Observed: with a fifth of it errors of springs that ring on add up to more than the tolerance. Pinned: ÷ 5,
 /// `relays_that_once_exceeded_the_tolerance_keep_it`.
 pub const DRIVEN: f64 = 0.1;
+
+/// Next terms of the force polynomial, in the error allowed in what is read, below which the law is not looked at where the force turns,
+/// 1: there it has differed by up to four of them. Pinned: infinite, `relays_that_once_exceeded_the_tolerance_keep_it`.
+pub const LOOKED: f64 = 0.1;
 
 /// Rounding of a contact force, of loads or of the indentation between nodes, relative to them, 1. About a thousand
 /// roundings. Pinned: × 1e8, `tests/calibration.rs`.

@@ -91,15 +91,18 @@
 //!
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it. Where inputs
 //! have just changed, forces bend, and an `m` that passes through zero shows nothing of it: there `m` is at least what the
-//! polynomials through fewer nodes let expect. Just after a
-//! closing, within [`constants::NEAR_BLOW`] steps of it, the sum counts [`constants::AFTER_BLOW`] times. In flight the estimate is what
-//! `m_a` and the quadrature do to the approach, times the stiffness the contact would have at the force scale.
+//! polynomials through fewer nodes let expect. In flight the estimate is what `m_a` and the quadrature do to the approach, times the
+//! stiffness the contact would have at the force scale.
 //!
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there. A blow makes it a
 //! hundred times larger, so at an opening it has to be below [`constants::AT_EVENT`] of the error allowed in a step. An estimate below
 //! what rounding makes of the motion ([`constants::MOTION_ROUNDING`]) counts as small ([`constants::ROUNDED`]): no shorter step reduces
-//! it. An error of what is read inside is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]); below that,
-//! the next step has the next length of the grid.
+//! it.
+//!
+//! What is read inside a step, its extremes too, may be wrong where the polynomials are right at their nodes ([`accuracy`]): by the next
+//! terms, extrapolated from polynomials through fewer nodes, and where a force turns by what it differs from its law, at the motion
+//! that also has the velocities at the nodes. That is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]);
+//! below it, the next step has the next length of the grid.
 //!
 //! # Step size control
 //!

@@ -150,13 +150,13 @@ pub(crate) fn error_of_growth<const S: usize>(factor: f64) -> f64 {
     (SAFETY / factor).powi(S as i32 + 1)
 }
 
-/// Factor on the length after a rejection for the relative error `ratio`, with the safety factor applied twice; the smallest without
-/// an error estimate.
+/// Factor on the length after a rejection for the relative error `ratio`, with the safety factor applied twice; the largest where
+/// Newton's method has failed, which tells nothing of the error.
 pub(crate) fn shrinkage<const S: usize>(ratio: f64) -> f64 {
     if ratio.is_finite() {
         (SAFETY * SAFETY * step_factor::<S>(ratio)).clamp(LEAST_SHRINK, MOST_SHRINK)
     } else {
-        LEAST_SHRINK
+        MOST_SHRINK
     }
 }
 

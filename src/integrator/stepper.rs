@@ -7,9 +7,7 @@ use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::commit::commit;
-use crate::integrator::constants::{
-    AFTER_BLOW, DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MOTION_ROUNDING, NEAR_BLOW, ROUNDED, SAFETY,
-};
+use crate::integrator::constants::{DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MOTION_ROUNDING, ROUNDED, SAFETY};
 use crate::integrator::energy::{balance, conservation};
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::events::{Event, Locator};
@@ -113,11 +111,12 @@ impl Stepper<'_> {
             } else {
                 0.0
             };
-        let near = self.state.kink_is_closing && self.state.time - self.state.last_kink < NEAR_BLOW * target.length;
-        let after_blow = if closed && near { AFTER_BLOW } else { 1.0 };
+        let unlawful = if watched && closed { whole.unlawful(allowed) / allowed } else { 0.0 };
+        // It only rejects.
+        let inside = if unlawful > 1.0 { inside.max(unlawful) } else { inside };
         let all = self.passing();
         let [ratio, own] = [all, all.min(INHERITED)].map(|share| {
-            let ratio = after_blow * trial.error.with(share) / model.tolerance.step.max(trial.rounding);
+            let ratio = trial.error.with(share) / model.tolerance.step.max(trial.rounding);
             // Not `max`, which would hide NaN.
             if ratio < inside { inside } else { ratio }
         });

@@ -24,7 +24,7 @@ pub enum Outcome {
 }
 
 /// Part of the tolerance by which a single step may be wrong, 1: a change of the input by as much is not seen.
-pub const OF_A_STEP: f64 = 1.0 / 250.0;
+pub const OF_A_STEP: f64 = 0.004;
 
 /// Difference of a reference from itself in shorter communication steps over what it says of its error, 1: a tenth of all it is used
 /// for, tolerances of 1e-8 and more.
