@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fastrand::Rng;
-use relay_contact::reference::{Model, Spring};
+use relay_contact::reference::{Mode, Model, Spring};
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, PointMass, Segment, Segments, Shape, SpringFile};
 
@@ -55,9 +55,8 @@ pub fn forked(scene: &Scene, share: f64) -> Option<Arc<SpringFile>> {
 /// The scene's spring by its modes, with their compliance.
 pub fn by_modes(scene: &Scene) -> Option<Arc<SpringFile>> {
     let model = Model::new(scene, 0.0).expect("a scene that can be simulated");
-    let own = model.modes.iter();
-    let compliance = own.clone().map(|own| own.tip.powi(2) / own.omega_squared).sum();
-    let modes = own.map(|own| GivenMode {
+    let compliance = model.modes.iter().map(Mode::compliance).sum();
+    let modes = model.modes.iter().map(|own| GivenMode {
         rotation: Some(own.rotation),
         pusher: Some(own.pusher),
         parallel: Some(own.parallel),

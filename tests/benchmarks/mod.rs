@@ -5,17 +5,15 @@
 
 mod forced_shock;
 mod hertz_impact;
-mod linear_scene;
+pub mod linear_scene;
 mod opening_threshold;
 mod restitution;
 mod shock;
 mod sphere_on_beam;
 
+use testing::near;
+
 /// All digits given, the last one rounded, and `error` beside it.
 fn digits(value: f64, published: f64, last_digit: f64, error: f64) {
-    assert!(
-        (value - published).abs() <= 0.5001 * last_digit + error,
-        "{value} against {published}, {:e}",
-        value - published
-    );
+    near("published", value, published, 0.5001 * last_digit + error);
 }

@@ -14,8 +14,7 @@ fn random_acceleration_has_the_power_asked_for() {
     let power = (0..count).map(|k| generator.acceleration(f64::from(k) / rate).powi(2)).sum::<f64>() / f64::from(count);
     let expected = density * (high - low);
     // Noise of this bandwidth scatters by 1 / sqrt(B T); four times that.
-    let allowed = 4.0 / ((high - low) * time).sqrt();
-    assert!((power / expected - 1.0).abs() < allowed, "{power} {expected}");
+    close("power, (m/s2)^2", power, expected, 4.0 / ((high - low) * time).sqrt());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use relay_contact::inputs::Inputs;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use testing::near;
 use testing::scenes::{LAWS, accelerated, force_scale};
 
 use super::{
@@ -69,12 +70,8 @@ fn the_communication_step_does_not_matter() {
                 for (times, every) in courses {
                     let (found, _) = forces(&scene, &times, undriven);
                     for (found, expected) in found.iter().skip(every - 1).step_by(every).zip(&reference) {
-                        assert!(
-                            (found - expected).abs() <= allowed,
-                            "{name} x {strength}, {law:?}, {} steps: {found} {expected}, {:.1e} of what is allowed",
-                            times.len(),
-                            (found - expected).abs() / allowed
-                        );
+                        let of = format!("{name} x {strength}, {law:?}, {} steps", times.len());
+                        near(of, *found, *expected, allowed);
                     }
                 }
             }
