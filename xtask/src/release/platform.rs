@@ -13,17 +13,6 @@ pub struct Platform {
     pub wheel: &'static str,
 }
 
-impl Platform {
-    const fn new(
-        folder: &'static str,
-        extension: &'static str,
-        targets: &'static [&'static str],
-        wheel: &'static str,
-    ) -> Self {
-        Self { folder, extension, targets, wheel }
-    }
-}
-
 const X86_LINUX: &str = "x86_64-unknown-linux-gnu";
 const ARM_LINUX: &str = "aarch64-unknown-linux-gnu";
 const WINDOWS: &str = "x86_64-pc-windows-gnullvm";
@@ -32,11 +21,11 @@ const ARM_MAC: &str = "aarch64-apple-darwin";
 
 /// All platforms.
 pub const PLATFORMS: [Platform; 5] = [
-    Platform::new("linux64", "so", &[X86_LINUX], "manylinux_2_17_x86_64"),
-    Platform::new("aarch64-linux", "so", &[ARM_LINUX], "manylinux_2_17_aarch64"),
-    Platform::new("win64", "dll", &[WINDOWS], "win_amd64"),
-    Platform::new("darwin64", "dylib", &[X86_MAC, ARM_MAC], "macosx_11_0_universal2"),
-    Platform::new("aarch64-darwin", "dylib", &[ARM_MAC], "macosx_11_0_universal2"),
+    Platform { folder: "linux64", extension: "so", targets: &[X86_LINUX], wheel: "manylinux_2_17_x86_64" },
+    Platform { folder: "aarch64-linux", extension: "so", targets: &[ARM_LINUX], wheel: "manylinux_2_17_aarch64" },
+    Platform { folder: "win64", extension: "dll", targets: &[WINDOWS], wheel: "win_amd64" },
+    Platform { folder: "darwin64", extension: "dylib", targets: &[X86_MAC, ARM_MAC], wheel: "macosx_11_0_universal2" },
+    Platform { folder: "aarch64-darwin", extension: "dylib", targets: &[ARM_MAC], wheel: "macosx_11_0_universal2" },
 ];
 
 #[cfg(test)]
