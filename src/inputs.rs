@@ -40,7 +40,8 @@ impl Inputs {
         Ok(())
     }
 
-    fn rate(&self, input: RealInput) -> f64 {
+    /// Rate of an input, in its unit per second.
+    pub fn rate(&self, input: RealInput) -> f64 {
         let mut inputs = *self;
         *inputs.course_mut(input).1
     }

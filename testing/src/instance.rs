@@ -6,7 +6,7 @@ use std::ptr;
 use relay_contact::fmi2::*;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
-use relay_contact::variables::{GUID, Group, VARIABLES, Variable};
+use relay_contact::variables::{GUID, Group, RealInput, VARIABLES, Variable};
 
 use crate::log::{self, Log, Message, callbacks};
 
@@ -183,31 +183,21 @@ impl Instance {
 
     /// Sets the inputs with their derivatives.
     pub fn set_inputs(&self, inputs: &Inputs) {
-        let names = [
-            "base.acceleration",
-            "support.displacement",
-            "second.displacement",
-            "pusher.displacement",
-            "contact.current",
-            "coil.relativeCurrent",
-        ];
-        let courses = [
-            (inputs.base_acceleration, inputs.base_acceleration_rate),
-            (inputs.support_displacement, inputs.support_displacement_rate),
-            (inputs.second_displacement, inputs.second_displacement_rate),
-            (inputs.pusher_displacement, inputs.pusher_displacement_rate),
-            (inputs.contact_current, inputs.contact_current_rate),
-            (inputs.coil_relative_current, inputs.coil_relative_current_rate),
-        ];
-        let (values, rates) = (courses.map(|(value, _)| value), courses.map(|(_, rate)| rate));
-        assert_eq!(self.set_reals(names, values), fmi2OK, "{:?}", self.log);
-        assert_eq!(self.set_rates(names, [1; 6], rates), fmi2OK, "{:?}", self.log);
+        for &input in RealInput::ALL {
+            let (reference, value, rate) = (input.variable().value_reference, inputs.real(input), inputs.rate(input));
+            assert_eq!(self.set_reals_of([reference], [value]), fmi2OK, "{:?}", self.log);
+            assert_eq!(self.set_rates_of([reference], [1], [rate]), fmi2OK, "{:?}", self.log);
+        }
     }
 
     /// `fmi2SetRealInputDerivatives`, of these orders.
     pub fn set_rates<const N: usize>(&self, names: [&str; N], orders: [i32; N], rates: [f64; N]) -> fmi2Status {
-        let (references, orders) = (names.map(vr), orders.as_ptr());
-        unsafe { fmi2SetRealInputDerivatives(self.component, references.as_ptr(), N, orders, rates.as_ptr()) }
+        self.set_rates_of(names.map(vr), orders, rates)
+    }
+
+    fn set_rates_of<const N: usize>(&self, references: [u32; N], orders: [i32; N], rates: [f64; N]) -> fmi2Status {
+        let (references, orders) = (references.as_ptr(), orders.as_ptr());
+        unsafe { fmi2SetRealInputDerivatives(self.component, references, N, orders, rates.as_ptr()) }
     }
 
     /// `fmi2GetRealOutputDerivatives` of one variable, the first: status and value.
