@@ -8,34 +8,23 @@ use crate::choices::{Choices, bytes};
 use crate::draw;
 use crate::judge::Judge;
 
-/// Counters of a sequence.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Count {
-    pub calls: u64,
-    pub steps: u64,
-}
-
 /// Bytes a sequence is drawn from: some hundreds of calls.
 const LENGTH: usize = 2000;
 
-/// Makes at least `wanted` random calls, starting with the sequence of number `seed`.
+/// Makes at least `wanted` random calls, starting with the sequence of number `seed`; how many they were.
 /// Panics at the first wrong answer, with the seed and the shortest sequence found that shows it.
-pub fn campaign(api: &Api, seed: u64, wanted: u64) -> Count {
-    let mut count = Count::default();
-    for seed in seed.. {
-        if count.calls >= wanted {
-            break;
-        }
-        let one = sequence(api, &bytes(seed, LENGTH)).unwrap_or_else(|failure| panic!("seed {seed}\n{failure}"));
-        count.calls += one.calls;
-        count.steps += one.steps;
+pub fn campaign(api: &Api, mut seed: u64, wanted: u64) -> u64 {
+    let mut calls = 0;
+    while calls < wanted {
+        calls += sequence(api, &bytes(seed, LENGTH)).unwrap_or_else(|failure| panic!("seed {seed}\n{failure}"));
+        seed += 1;
     }
-    count
+    calls
 }
 
-/// Makes the calls drawn from the bytes.
+/// Makes the calls drawn from the bytes; how many they were.
 /// An error is the first wrong answer, with the shortest sequence found that shows it.
-pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
+pub fn sequence(api: &Api, bytes: &[u8]) -> Result<u64, String> {
     let mut judge = Judge::new(api);
     let mut choices = Choices::new(bytes);
     let mut made = Vec::new();
@@ -49,7 +38,7 @@ pub fn sequence(api: &Api, bytes: &[u8]) -> Result<Count, String> {
             return Err(format!("{reason}\nafter the calls\n{}", calls.join("\n")));
         }
     }
-    Ok(Count { calls: judge.calls, steps: judge.steps })
+    Ok(judge.calls)
 }
 
 /// Makes the calls on a new instance.

@@ -12,10 +12,7 @@ const CALLS: u64 = 100_000;
 fn random_calls_get_no_wrong_answer() {
     let wanted = std::env::var("CAMPAIGN_CALLS").map_or(CALLS, |calls| calls.parse().unwrap());
     let start = Instant::now();
-    let count = campaign(&LIBRARY, 0, wanted);
+    let calls = campaign(&LIBRARY, 0, wanted);
     let seconds = start.elapsed().as_secs_f64();
-    println!(
-        "{} random calls with {} communication steps without a wrong answer, in {seconds:.1} s",
-        count.calls, count.steps
-    );
+    println!("{calls} random calls without a wrong answer, in {seconds:.1} s");
 }
