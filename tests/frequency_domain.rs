@@ -8,29 +8,24 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::{self, ElectricalContact, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, ExcitationKind, RealOutput, ResistanceKind};
+use relay_contact::variables::{ContactLawKind, RealOutput, ResistanceKind};
+
+use crate::benchmarks::linear_scene::damped;
 
 /// Damping of beam and contact: alpha (1/s), beta and beta_c (s).
-const DAMPINGS: [(&str, [f64; 3]); 5] = [
-    ("stiffness", [0.0, 8.063e-5, 8.063e-5]),
-    ("mass", [5125.0, 0.0, 0.0]),
-    ("both", [2000.0, 4e-5, 4e-5]),
-    ("more in the contact", [0.0, 4e-5, 3e-4]),
-    ("mass, and in the contact", [3000.0, 0.0, 8.063e-5]),
+const DAMPINGS: [(&str, (f64, f64, f64)); 5] = [
+    ("stiffness", (0.0, 8.063e-5, 8.063e-5)),
+    ("mass", (5125.0, 0.0, 0.0)),
+    ("both", (2000.0, 4e-5, 4e-5)),
+    ("more in the contact", (0.0, 4e-5, 3e-4)),
+    ("mass, and in the contact", (3000.0, 0.0, 8.063e-5)),
 ];
 
 const FREQUENCIES: [f64; 6] = [50.0, 500.0, 1000.0, 1354.5, 2000.0, 4400.0];
 
-fn shaken([alpha, beta, contact]: [f64; 3], frequency: f64) -> Scene {
-    let mut scene = Scene::default();
-    scene.beam.mass_damping = alpha;
-    scene.beam.stiffness_damping = beta;
-    scene.contact.damping = contact;
-    scene.effects.excitation = ExcitationKind::Sine;
+fn shaken(law: ContactLawKind, damping: (f64, f64, f64), frequency: f64) -> Scene {
+    let mut scene = damped(law, 0, damping);
     scene.excitation.frequency = frequency;
-    // Without them a linear scene takes exact steps.
-    scene.effects.extremes = false;
-    scene.effects.chatter = false;
     scene
 }
 
@@ -64,8 +59,7 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
             for law in [ContactLawKind::Bonded, ContactLawKind::Linearised] {
                 // In exact steps, and in steps with a polynomial of the force.
                 for (maximum_step, tolerance) in [(0.0, 1e-6), (0.05 / frequency, 1e-11)] {
-                    let mut scene = shaken(damping, frequency);
-                    scene.effects.contact_law = law;
+                    let mut scene = shaken(law, damping, frequency);
                     scene.solver.maximum_step = maximum_step;
                     scene.solver.tolerance = tolerance;
                     let model = Model::new(&scene, 0.0).unwrap();
@@ -87,8 +81,7 @@ fn the_transient_of_the_linear_contact_settles_to_it() {
 #[test]
 fn a_small_swing_of_the_resistance_is_that_of_the_force() {
     for kind in [ResistanceKind::PowerLaw, ResistanceKind::Holm] {
-        let mut scene = shaken(DAMPINGS[0].1, 1000.0);
-        scene.effects.contact_law = ContactLawKind::Bonded;
+        let mut scene = shaken(ContactLawKind::Bonded, DAMPINGS[0].1, 1000.0);
         scene.effects.resistance = kind;
         scene.resistance.film = 0.01;
         scene.excitation.amplitude = 0.1;

@@ -10,10 +10,10 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Law, Model, Space};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, RealOutput};
+use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 use testing::near;
 use testing::rig::Rig;
-use testing::scenes::accelerated;
+use testing::scenes::{accelerated, shaken};
 
 const FREQUENCY: f64 = 1000.0;
 const AMPLITUDE: f64 = 98.0;
@@ -56,14 +56,11 @@ fn force(model: &Model, t: f64) -> f64 {
 }
 
 fn scene(law: ContactLawKind) -> Scene {
-    let mut scene = Scene::default();
+    let mut scene = shaken(AMPLITUDE, FREQUENCY);
     // With them steps would be short.
     scene.effects.extremes = false;
     scene.effects.chatter = false;
     scene.effects.contact_law = law;
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.frequency = FREQUENCY;
-    scene.excitation.amplitude = AMPLITUDE;
     scene.solver.modes = 8;
     scene
 }
@@ -148,7 +145,8 @@ const DAMPINGS: [(f64, f64, f64); 9] = [
     (0.0, 8.063e-5, 8.0631e-5),
 ];
 
-fn damped(law: ContactLawKind, modes: i32, (alpha, beta, contact): (f64, f64, f64)) -> Scene {
+/// Of so many modes; 0: as many as the tolerance needs.
+pub fn damped(law: ContactLawKind, modes: i32, (alpha, beta, contact): (f64, f64, f64)) -> Scene {
     let mut scene = scene(law);
     scene.solver.modes = modes;
     scene.beam.mass_damping = alpha;
