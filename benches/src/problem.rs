@@ -121,7 +121,7 @@ impl Problem {
     /// Force and derivatives on the branch.
     pub fn branch(&self, closed: bool, time: f64, state: &[f64]) -> Branch {
         let (d, rate) = self.indentation(time, state);
-        if closed { self.model.law.closed_branch(d, rate) } else { Branch { force: 0.0, stiffness: 0.0, damping: 0.0 } }
+        if closed { self.model.law.closed_branch(d, rate) } else { Branch::default() }
     }
 
     /// Contact force on the grid, N.

@@ -8,7 +8,7 @@ pub mod power;
 use crate::math::nodal::Nodal;
 
 /// Force on the closed branch of a law, with its partial derivatives.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Branch {
     /// Force, N.
     pub force: f64,
