@@ -121,8 +121,7 @@ fn energy_is_kept_where_the_spring_leaves_the_pusher() {
     assert!(left, "the spring leaves the pusher: {least}");
 }
 
-/// With the pusher as one more spring, from the determinant of the receptances of the cantilever's exact static shapes: at rest
-/// far below the first frequency of the held spring only the stiffness counts, so here the frequency is that of a run.
+/// The frequency of the modes with contact and pusher as springs, against that of a run.
 #[test]
 fn the_frequency_is_that_of_free_motion() {
     let mut scene = pushed(Scene::default());
@@ -155,7 +154,7 @@ fn the_frequency_is_that_of_free_motion() {
         }
         c * c + s * s
     };
-    let near: Vec<f64> = (-100..=100).map(|k| frequency * (1.0 + 1e-4 * f64::from(k))).collect();
-    let best = near.iter().copied().max_by(|a, b| power(*a).total_cmp(&power(*b))).unwrap();
-    assert!((best - frequency).abs() <= 2.1e-4 * frequency, "{best} {frequency}");
+    // The peak of forty periods is so wide that it is a parabola here: its top is less than half as far from the middle.
+    let [below, at, above] = [-3e-4, 0.0, 3e-4].map(|off| power(frequency * (1.0 + off)));
+    assert!(at > below && at > above, "{below} {at} {above}");
 }
