@@ -1,5 +1,7 @@
 //! Interface of the integrators.
 
+use thiserror::Error;
+
 use crate::problem::Problem;
 
 /// Processor time an integrator may take for a run, s.
@@ -22,21 +24,14 @@ pub struct Run {
 }
 
 /// A failed run.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Failure {
     /// The integrator is not installed here.
+    #[error("skipped: {0}")]
     Unavailable(String),
     /// It stopped or gave no usable result.
+    #[error("failed: {0}")]
     Stopped(String),
-}
-
-impl std::fmt::Display for Failure {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Unavailable(why) => write!(f, "skipped: {why}"),
-            Self::Stopped(why) => write!(f, "failed: {why}"),
-        }
-    }
 }
 
 /// An integrator of the contact's equations.
