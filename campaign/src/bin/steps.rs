@@ -9,9 +9,9 @@ use campaign::description::DESCRIPTION;
 use campaign::importer::Importer;
 use relay_contact::fmi2::{fmi2OK, fmi2True};
 use relay_contact::inputs::Inputs;
-use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ExcitationKind, RealOutput};
+use relay_contact::variables::RealOutput;
+use testing::scenes::shaken;
 
 const AMPLITUDE: f64 = 98.0;
 
@@ -74,11 +74,8 @@ fn through_c(plan: &[(f64, f64)]) -> f64 {
 }
 
 fn alone(plan: &[(f64, f64)]) -> f64 {
-    let mut scene = Scene::default();
-    scene.effects.excitation = ExcitationKind::Sine;
-    scene.excitation.amplitude = AMPLITUDE;
     let mut inputs = Inputs::default();
-    let mut simulation = Simulation::new(&scene, &inputs, 0.0).expect("a scene that fits");
+    let mut simulation = Simulation::new(&shaken(AMPLITUDE, 1000.0), &inputs, 0.0).expect("a scene that fits");
     for (size, acceleration) in plan {
         inputs.base_acceleration = *acceleration;
         simulation.step(&inputs, simulation.time(), *size).expect("a step");
