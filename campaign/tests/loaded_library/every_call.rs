@@ -12,21 +12,24 @@ use campaign::states::{Phase, functions};
 use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::fmi2::*;
 
-/// An instance in the phase, with a saved state and its bytes in the first slot.
-fn in_phase(phase: Phase) -> Judge<'static> {
-    let mut judge = Judge::new(&LIBRARY);
-    judge.run(&[Call::save(0), Call::serialize(0)]).unwrap();
-    let [enter, exit] = Call::INITIALISE;
-    let more = match phase {
+/// Brings an instance from any state into the phase, with a saved state and its bytes in the first slot; a new one into the phases
+/// before its start.
+fn bring(judge: &mut Judge, phase: Phase) -> Result<(), String> {
+    let free = |slot| Call::FreeState(slot, Fault::None);
+    let first = if has_started(phase) { Call::Reset } else { Call::Renew };
+    judge.run(&[first, free(0), free(1), Call::save(0), Call::serialize(0)])?;
+    let ([enter, exit], step) = (Call::INITIALISE, Call::step(1e-5));
+    judge.run(&match phase {
         Phase::Instantiated => vec![],
         Phase::InitializationMode => vec![enter],
-        Phase::StepComplete => vec![enter, exit, Call::step(1e-5)],
-        Phase::Terminated => vec![enter, exit, Call::Terminate],
-        Phase::Error => vec![enter, exit, Call::step(-1.0)],
-    };
-    judge.run(&more).unwrap();
-    assert_eq!(judge.life.now.phase, phase);
-    judge
+        Phase::StepComplete => vec![enter, exit, step],
+        Phase::Terminated => vec![enter, exit, step, Call::Terminate],
+        Phase::Error => vec![enter, exit, step, Call::step(-1.0)],
+    })
+}
+
+fn has_started(phase: Phase) -> bool {
+    !matches!(phase, Phase::Instantiated | Phase::InitializationMode)
 }
 
 /// Every function with valid arguments, and with each fault.
@@ -147,25 +150,27 @@ fn wrong_numbers() -> Vec<Call> {
     calls
 }
 
-/// From any state to a first step.
-fn reset_and_run() -> [Call; 4] {
-    let [enter, exit] = Call::INITIALISE;
-    [Call::Reset, enter, exit, Call::step(1e-5)]
+/// A call in the phase. Whatever it is, after an error no more values can be set, and the instance can be reset, up to a first step.
+fn call_in(judge: &mut Judge, phase: Phase, call: &Call) -> Result<(), String> {
+    judge.call(call)?;
+    judge.run(&[Call::set_reals(vec![(DESCRIPTION.reference("base.acceleration"), 1.0)]), Call::restore(2)])?;
+    if !has_started(phase) {
+        bring(judge, Phase::StepComplete)?;
+    }
+    bring(judge, phase)
 }
 
 #[test]
 fn every_call_in_every_state_gets_the_answer_of_the_standard() {
     let mut met = BTreeSet::new();
-    let set = Call::set_reals(vec![(DESCRIPTION.reference("base.acceleration"), 1.0)]);
     for phase in Phase::ALL {
+        let mut judge = Judge::new(&LIBRARY);
+        bring(&mut judge, phase).unwrap();
         for call in calls().iter().chain(&wrong_numbers()) {
-            let mut judge = in_phase(phase);
-            judge.call(call).unwrap();
-            met.extend(judge.met.iter().map(|(function, _)| *function));
-            // In any case, after an error no more values can be set, and the instance can be reset.
-            judge.run(&[set.clone(), Call::restore(2)]).unwrap();
-            judge.run(&reset_and_run()).unwrap();
+            assert_eq!(judge.life.now.phase, phase);
+            call_in(&mut judge, phase, call).unwrap_or_else(|failure| panic!("{call:?}: {failure}"));
         }
+        met.extend(judge.met.iter().map(|(function, _)| *function));
     }
     for function in functions() {
         assert!(met.contains(function), "{function} was not called");
