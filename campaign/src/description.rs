@@ -1,5 +1,6 @@
 //! `modelDescription.xml`, read as by an importer.
 
+use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use relay_contact::MODEL_DESCRIPTION;
@@ -64,6 +65,8 @@ pub struct Description {
     pub guid: String,
     /// In the order of the file.
     pub variables: Vec<Variable>,
+    /// Their indices by reference.
+    positions: HashMap<u32, usize>,
     pub categories: Vec<String>,
 }
 
@@ -82,16 +85,18 @@ impl Description {
                 .filter_map(|item| item.attribute("value")?.parse().ok())
                 .collect()
         };
+        let variables: Vec<_> = children("ModelVariables").map(|node| variable(node, choices)).collect();
         Self {
             guid: document.root_element().attribute("guid").unwrap_or_default().to_owned(),
-            variables: children("ModelVariables").map(|node| variable(node, choices)).collect(),
+            positions: variables.iter().enumerate().map(|(at, variable)| (variable.reference, at)).collect(),
+            variables,
             categories: children("LogCategories").filter_map(|node| Some(node.attribute("name")?.to_owned())).collect(),
         }
     }
 
     /// The index of a variable.
     pub fn position(&self, reference: u32) -> Option<usize> {
-        self.variables.iter().position(|variable| variable.reference == reference)
+        self.positions.get(&reference).copied()
     }
 
     /// The variable of a reference.
