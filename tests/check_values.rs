@@ -8,7 +8,7 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, ExcitationKind, RealOutput};
 use testing::near;
-use testing::scenes::at_rest;
+use testing::scenes::{at_rest, course_from};
 
 /// The specimen without axial force, at a tolerance of 1e-8.
 fn specimen() -> Scene {
@@ -64,17 +64,10 @@ fn linear_force_amplitude() {
 fn nonlinear_periodic_state_at_1_khz() {
     let mut scene = specimen();
     scene.effects.excitation = ExcitationKind::Sine;
-    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
-    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-    for k in 0..40_000 {
-        simulation.step(&Inputs::default(), f64::from(k) * 1e-6, 1e-6).unwrap();
-        if k >= 39_000 {
-            low = low.min(simulation.real(RealOutput::ContactForce));
-            high = high.max(simulation.real(RealOutput::ContactForce));
-        }
-    }
-    digits(low, 0.103_905, 1e-6);
-    digits(high, 0.200_149, 1e-6);
+    let (rows, _) = course_from(&scene, 39e-3, 1e-6, 1000, [RealOutput::ContactForce]);
+    let forces = rows.into_iter().flatten();
+    digits(forces.clone().fold(f64::INFINITY, f64::min), 0.103_905, 1e-6);
+    digits(forces.fold(0.0, f64::max), 0.200_149, 1e-6);
 }
 
 #[test]

@@ -92,10 +92,24 @@ pub fn course<const N: usize>(
     count: u32,
     outputs: [RealOutput; N],
 ) -> (Vec<[f64; N]>, Simulation) {
+    course_from(scene, 0.0, size, count, outputs)
+}
+
+/// The same after a single step to `start`, s.
+pub fn course_from<const N: usize>(
+    scene: &Scene,
+    start: f64,
+    size: f64,
+    count: u32,
+    outputs: [RealOutput; N],
+) -> (Vec<[f64; N]>, Simulation) {
     let inputs = Inputs::default();
     let mut simulation = Simulation::new(scene, &inputs, 0.0).expect("a scene that can be simulated");
+    if start > 0.0 {
+        simulation.step(&inputs, 0.0, start).expect("a step");
+    }
     let rows = (0..count).map(|k| {
-        simulation.step(&inputs, f64::from(k) * size, size).expect("a step");
+        simulation.step(&inputs, start + f64::from(k) * size, size).expect("a step");
         outputs.map(|output| simulation.real(output))
     });
     (rows.collect(), simulation)

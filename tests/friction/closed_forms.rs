@@ -10,7 +10,7 @@ use relay_contact::scene::Scene;
 use relay_contact::scene::spring::GivenMode;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
-use testing::scenes::{at_rest, course, shaken, undamped};
+use testing::scenes::{at_rest, course, course_from, shaken, undamped};
 use testing::springs::{mode, of_modes, spring_file};
 use testing::{close, near};
 
@@ -95,10 +95,8 @@ fn amplitude_of_a_coulomb_damped_oscillator() {
         scene.solver.tolerance = 1e-5;
         let per_cycle = 2000;
         let period = 1.0 / (OWN * ratio);
-        let cycles = 80;
-        let (rows, _) = course(&scene, period / f64::from(per_cycle), cycles * per_cycle, ALONG);
-        let last = rows.len() - 10 * per_cycle as usize;
-        let moved = displacements(&rows[last..], stiffness);
+        let (rows, _) = course_from(&scene, 70.0 * period, period / f64::from(per_cycle), 10 * per_cycle, ALONG);
+        let moved = displacements(&rows, stiffness);
         let found = moved.iter().map(|x| x.abs()).fold(0.0, f64::max);
         let spring = MASS * (TAU * OWN).powi(2);
         let (v, u) = (1.0 / (1.0 - ratio * ratio), (PI / ratio).sin() / (ratio * (1.0 + (PI / ratio).cos())));
