@@ -30,7 +30,7 @@ fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64;
     rows
 }
 
-fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
+fn check(scene: &Scene, inputs: impl Fn(f64) -> Inputs + Copy) {
     let exact = {
         let mut scene = scene.clone();
         scene.solver.tolerance = 1e-10;
@@ -41,15 +41,11 @@ fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
     let force = scene.solver.tolerance * scenes::force_scale(scene);
     let way = force / scenes::tip_stiffness(scene);
     let allowed = [force, way, way * 2.0 * std::f64::consts::PI * 9100.0];
-    for (row, (found, exact)) in motion(scene, size, inputs).iter().zip(&exact).enumerate() {
-        for ((found, exact), allowed) in found.iter().zip(exact).zip(allowed) {
-            let error = (found - exact).abs();
-            assert!(
-                error <= allowed,
-                "{} us, steps of {size} us: {found} {exact}, {:.1e} of what is allowed",
-                10 * (row + 1),
-                error / allowed
-            );
+    for size in [1, 2, 5, 10] {
+        for (row, (found, exact)) in motion(scene, size, inputs).iter().zip(&exact).enumerate() {
+            for ((found, exact), allowed) in found.iter().zip(exact).zip(allowed) {
+                near(format_args!("{} us, steps of {size} us", 10 * (row + 1)), *found, *exact, allowed);
+            }
         }
     }
 }
@@ -58,14 +54,12 @@ fn check(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs + Copy) {
 #[test]
 fn what_is_read_inside_the_integrators_steps_is_within_the_tolerance() {
     let pulsed = |time: f64| accelerated(if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 }, 0.0);
-    for size in [1, 2, 5, 10] {
-        for amplitude in [98.0, 400.0] {
-            for tolerance in [1e-3, 1e-5, 1e-7] {
-                check(&shaken(amplitude, tolerance), size, |_| Inputs::default());
-            }
+    for amplitude in [98.0, 400.0] {
+        for tolerance in [1e-3, 1e-5, 1e-7] {
+            check(&shaken(amplitude, tolerance), |_| Inputs::default());
         }
-        check(&shaken(98.0, 1e-6), size, pulsed);
     }
+    check(&shaken(98.0, 1e-6), pulsed);
 }
 
 #[test]
