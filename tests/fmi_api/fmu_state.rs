@@ -2,7 +2,7 @@
 
 use relay_contact::fmi2::*;
 use relay_contact::variables::PusherKind;
-use testing::instance::Instance;
+use testing::instance::{Instance, vr};
 use testing::kinds::{KINDS, Kind};
 
 /// Shaken with this amplitude (m/s2): the contact opens.
@@ -31,13 +31,14 @@ const OUTPUTS: [&str; 12] = [
 
 /// The bits of the outputs over `count` steps of `size` seconds from `start` on, with inputs that change now and then.
 pub fn trace(fmu: &Instance, start: u32, count: u32, size: f64) -> Vec<[u64; 12]> {
+    let outputs = OUTPUTS.map(vr);
     (start..start + count)
         .map(|k| {
             assert_eq!(fmu.set_real("base.acceleration", f64::from(k / 37)), fmi2OK);
             assert_eq!(fmu.set_real("contact.current", 1e-3 * f64::from(k)), fmi2OK);
             // Where errors may have grown beyond the tolerance, a warning says so.
             assert_eq!(fmu.step(f64::from(k) * size, size), fmi2OK);
-            OUTPUTS.map(|name| fmu.real(name).to_bits())
+            fmu.reals_of(outputs).map(f64::to_bits)
         })
         .collect()
 }
