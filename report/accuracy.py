@@ -198,7 +198,5 @@ def section() -> Section:
     """Return the page as a section, led by what the tables say of themselves."""
     page = whole(DOCS / "accuracy.md")
     (lead,) = [line for line in page.text.splitlines() if line.startswith(VERDICT)]
-    measured = (
-        "Not measured for this page but by the last `cargo xtask accuracy`: machine and date are with the tables."
-    )
-    return Section(page.title, f"**{lead}** {measured}\n\n{page.text}", lead)
+    told = "Not measured for this page but by the last `cargo xtask accuracy`: machine and date are with the tables."
+    return Section(page.title, f"**{lead}** {told}\n\n{page.text}", lead)

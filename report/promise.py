@@ -49,9 +49,8 @@ def by_kind(ran: pd.DataFrame) -> str:
         counts = [len(of), of.kept.sum(), (of.above & of.announced).sum(), (of.above & ~of.announced).sum(),
                   (of.kept & of.announced).sum()]  # fmt: skip
         lines.append([str(kind), *map(str, counts)])
-    return table(
-        ["kind", "relays", "kept", "above, announced", "above, not announced", "kept, announced as above"], lines
-    )
+    columns = ["kind", "relays", "kept", "above, announced", "above, not announced", "kept, announced as above"]
+    return table(columns, lines)
 
 
 def figure(relays: pd.DataFrame) -> Figure:

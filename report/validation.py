@@ -157,22 +157,16 @@ def fitted_contacts() -> dict[str, Any]:
         if (contact, name) not in parameters.index:
             return ""
         unit, value, low, high = parameters.loc[(contact, name)]
-        shown = f"{significant(value, 3)} {unit}".strip()
-        return (
-            f"{shown}, undetermined"
-            if high > 100 * low
-            else f"{shown} ({significant(low, 3)} to {significant(high, 3)})"
-        )
+        interval = f" ({significant(low, 3)} to {significant(high, 3)})"
+        return f"{significant(value, 3)} {unit}".strip() + (", undetermined" if high > 100 * low else interval)
 
     fitted, others = (numbers[numbers.fitted == each] for each in (1, 0))
     rms = {contact: parameter(contact, "rms") for contact in CONTACTS}
     lines = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in parameters.loc["Rough"].index[1:]]
     # Those fitted, and the displacement with the weakest damping, which stands first among the others.
     with_weakest = pd.concat([fitted, others[:1]])
-    stiffness, exponent = (
-        parameter("Rough", "contact stiffness at 0.152 N"),
-        parameter("Rough", "exponent of the stiffness"),
-    )
+    stiffness = parameter("Rough", "contact stiffness at 0.152 N")
+    exponent = parameter("Rough", "exponent of the stiffness")
     rest, stiff, phase = find("resistance at rest"), find("contact as a spring"), find("phase")
     law = stiffness * rest["Rough"] / rest["published"]
     before, after = find("s = 0.45 mm"), find("s = 0.5 mm")

@@ -147,9 +147,8 @@ def draw_map(axes: Axes, outcomes: pd.DataFrame, name: str, title: str) -> None:
     else:
         bar.set_label("bounce time [µs]")
         bar.ax.yaxis.set_major_formatter("{x:g}")
-    axes.set(
-        xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="contact damping [µs]", title=title
-    )
+    axes.set(xlabel="speed of the actuator [mm/s]", ylabel="contact damping [µs]", title=title)
+    axes.set(xscale="log", yscale="log")
 
 
 def draw(path: Path, relay: Relay, outcomes: pd.DataFrame, shown: Outcome, rows: Array) -> None:
@@ -159,9 +158,8 @@ def draw(path: Path, relay: Relay, outcomes: pd.DataFrame, shown: Outcome, rows:
     since = 1e6 * (time - shown.first_touch)
     near = (since > -40) & (since < max(250, 1.5e6 * shown.bounce_time))
     make.plot(since[near], force[near], color=BLUE, label="contact force")
-    make.fill_between(
-        since[near], 0, 1, where=force[near] <= 0, color=RED, alpha=0.2, transform=make.get_xaxis_transform(), lw=0
-    )
+    across = make.get_xaxis_transform()
+    make.fill_between(since[near], 0, 1, where=force[near] <= 0, color=RED, alpha=0.2, transform=across, lw=0)
     make.fill_between([], [], color=RED, alpha=0.2, label="open")
     make.set(xlabel="time after the first touch [µs]", ylabel="contact force [N]", title="Make")
     since = 1e3 * (time - course(relay.gap, relay.overtravel, shown.speed)[2])
@@ -180,9 +178,7 @@ def draw(path: Path, relay: Relay, outcomes: pd.DataFrame, shown: Outcome, rows:
         delays = 1e3 * outcomes["break_time"][outcomes["damping"] == damping]
         delay.plot(1e3 * speeds, delays, ".-", color=colour, label=f"damping {1e6 * damping:.3g} µs")
     passing = 1.5 * relay.overtravel / speeds
-    delay.plot(
-        1e3 * speeds, 1e3 * passing, color=GREY, linestyle="--", label="actuator passes the spring's rest position"
-    )
+    delay.plot(1e3 * speeds, 1e3 * passing, "--", color=GREY, label="actuator passes the spring's rest position")
     delay.set(xscale="log", yscale="log", xlabel="speed of the actuator [mm/s]", ylabel="break time [ms]")
     delay.set_title("Break: from the actuator's start to the last separation")
     delay.legend(fontsize="small", frameon=False)

@@ -70,9 +70,8 @@ def lowest_frequency(start: dict[str, float], contact: float, turning: float) ->
 
 def tangential_ratio(start: dict[str, float]) -> float:
     """Give the stiffness of the contact along the spring over that along its normal (Mindlin)."""
-    sides = [
-        (start[f"contact.{side}.youngsModulus"], start[f"contact.{side}.poissonRatio"]) for side in ("moving", "fixed")
-    ]
+    names = "youngsModulus", "poissonRatio"
+    sides = [[start[f"contact.{side}.{name}"] for name in names] for side in ("moving", "fixed")]
     normal = sum((1 - nu**2) / e for e, nu in sides)
     return 4 * normal / sum((2 - nu) * 2 * (1 + nu) / e for e, nu in sides)
 

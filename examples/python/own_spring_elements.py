@@ -252,11 +252,9 @@ class Elements:
         number = 1 + max(element[0] for _, block in self.mesh.blocks for element in block)
         spring = f"*ELEMENT, TYPE=SPRING1, ELSET=fixed\n{number}, {self.centre}\n*SPRING, ELSET=fixed\n3\n{stiffness}"
         modes = f"*FREQUENCY, STORAGE=YES\n{SUPERPOSED}"
-        harmonic = (
-            f"*STEADY STATE DYNAMICS\n{band[0]}, {band[1]}, {points}, 2.\n*MODAL DAMPING, RAYLEIGH\n,, 0., {beta}"
-        )
+        steady = f"*STEADY STATE DYNAMICS\n{band[0]}, {band[1]}, {points}, 2.\n*MODAL DAMPING, RAYLEIGH\n,, 0., {beta}"
         gravity = "*DLOAD\nspring, GRAV, 1.0, 0, 0, -1\nrivet, GRAV, 1.0, 0, 0, -1"
-        table = self.solve("response", [self.centre], modes, f"{harmonic}\n{gravity}\n{PRINT}", more=spring)
+        table = self.solve("response", [self.centre], modes, f"{steady}\n{gravity}\n{PRINT}", more=spring)
         parts = [(frequency, float(values[0])) for frequency, values in self.printed(table)]
         pairs = zip(parts[0::2], parts[1::2], strict=True)
         rows = np.unique([[frequency, math.hypot(real, other)] for (frequency, real), (_, other) in pairs], axis=0)

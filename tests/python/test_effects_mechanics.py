@@ -82,9 +82,7 @@ def test_the_force_of_a_law_under_vibration_until_the_contact_closes_again(law: 
     ],
 )
 def test_off_is_the_same_as_a_neutral_parameter(off: Values, neutral: Values) -> None:
-    forces = [
-        run(shaken(values, 98.0, 1e-6), 2e-3, 1e-5, ["contact.force"])["contact.force"] for values in (off, neutral)
-    ]
+    forces = [run(shaken(each, 98.0, 1e-6), 2e-3, 1e-5, ["contact.force"])["contact.force"] for each in (off, neutral)]
     assert (forces[0] == forces[1]).all()
 
 

@@ -190,10 +190,9 @@ WITHIN = 2e-6 * FORCE_SCALE
 def test_without_an_effect_its_outputs_are_zero_and_the_motion_is_the_same(
     effect: str, outputs: list[str], pressed: float, opening: float
 ) -> None:
+    names = ["contact.force", *outputs]
     for scene, allowed in ((PRESSED, pressed), (OPENING, opening)):
-        on, off = (
-            run({**scene, f"effects.{effect}": on}, 3e-3, 1e-5, ["contact.force", *outputs]) for on in (True, False)
-        )
+        on, off = (run({**scene, f"effects.{effect}": each}, 3e-3, 1e-5, names) for each in (True, False))
         assert np.abs(on["contact.force"] - off["contact.force"]).max() <= allowed
         for name in outputs:
             assert (on[name] > 0).any() or (effect == "chatter" and scene is PRESSED)

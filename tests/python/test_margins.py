@@ -75,9 +75,7 @@ def fails(specimen: Specimen, test: Asked, level: float) -> bool:
     low, high = test.band
     frequencies = np.geomspace(low, high, 1 + int(np.log(high / low) / 0.02))
     # From the highest, where the weakest usually are: the first failure decides.
-    return any(
-        bool(steady(specimen, f, level * float(test.amplitude(np.array(f))), True)[0]) for f in frequencies[::-1]
-    )
+    return any(bool(steady(specimen, f, level * float(test.amplitude(f)), True)[0]) for f in frequencies[::-1])
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -30,9 +30,7 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
     if file != str(MODES):
         return
     closed: Any = {"beam.file": file, "contact.overtravel": 1e-3, "contact.curvatureRadius": 1.0}
-    pairs = (
-        resting({**closed, "spring.stiffness": each}, "preload.force", "preload.indentation") for each in (1, 1.21)
-    )
+    pairs = (resting({**closed, "spring.stiffness": k}, "preload.force", "preload.indentation") for k in (1, 1.21))
     own, stiff = (force / (1e-3 - indentation) for force, indentation in pairs)
     assert stiff == pytest.approx(1.21 * own, rel=1e-9)
 
@@ -86,10 +84,9 @@ def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
 
 def test_unknown_entries_are_explained(tmp_path: Path) -> None:
     file = tmp_path / "relay.toml"
-    file.write_text(f"parameters.beam.file = '{SEGMENTS}'\nuncertainty.spring.segment.3.thickness = 0.02\n")
-    with pytest.raises(
-        RelayContactError, match=r"relay.toml:2: uncertainty.spring.segment.3.thickness: no such entry.*did you mean"
-    ):
+    entry = "uncertainty.spring.segment.3.thickness"
+    file.write_text(f"parameters.beam.file = '{SEGMENTS}'\n{entry} = 0.02\n")
+    with pytest.raises(RelayContactError, match=f"relay.toml:2: {entry}: no such entry.*did you mean"):
         Relay.read(file, COMPONENT)
     with pytest.raises(RelayContactError, match=r"spring.thickness: no such entry; there are spring.stiffness"):
         frequency(spring__thickness=1.1)
