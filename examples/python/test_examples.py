@@ -244,7 +244,7 @@ def test_the_bounce_of_a_closing_contact_is_that_of_a_second_solution(run: Run, 
     values: Values = {"contact.overtravel": 0.0, "contact.damping": damping, "effects.axialForce": "None"}
     reference = Reference(values)
     times, limit = np.array([0.0, *after[near], 300e-6]), reference.force_of_resistance(60.0)
-    bounce = reference.course(times, lambda _: 0.0, speed=speed, limit=limit)
+    bounce = reference.course(times, speed=speed, limit=limit)
     force, opened = bounce.forces["contact"][1:-1], np.array(bounce.changes["contact", "falls"])
     closed = np.array(bounce.changes["contact", "rises"])
     # The blow is of the high modes, of which both have a limited number: 1e-3 of it.

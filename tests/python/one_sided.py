@@ -7,7 +7,7 @@ integrates between the instants at which one of them changes, which it finds as 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import cos, pi, sin
+from math import copysign, cos, exp, inf, log, pi, sin
 from typing import Any, Literal
 
 import numpy as np
@@ -79,17 +79,29 @@ def risen(time: float, rise: float) -> float:
     return (1 - cos(pi * time / rise)) / 2 if time < rise else 1.0
 
 
-def shaking(known: dict[str, Any]) -> tuple[Acceleration, float]:
-    """Return the acceleration of the base by the parameters of a component, and the instant (s) at which it bends."""
-    amplitude: float = known["excitation.amplitude"]
-    duration: float = known["excitation.duration"]
-    match known["effects.excitation"]:
-        case "Sine":
-            omega, rise = 2 * pi * known["excitation.frequency"], known["excitation.riseTime"]
-            return lambda time: amplitude * risen(time, rise) * sin(omega * time), rise or np.inf
-        case "HalfSine":
-            return lambda time: amplitude * sin(pi * time / duration) if time < duration else 0.0, duration
-    return lambda _: 0.0, np.inf
+def shaking(known: dict[str, Any]) -> tuple[Acceleration, float, float]:
+    """Return the acceleration of the base by the parameters of a component, and instants (s) at which it bends."""
+    names = "amplitude", "frequency", "endFrequency", "phase", "startTime", "duration", "riseTime", "displacementLimit"
+    amplitude, first, last, phase, start, duration, rise, limit = (known[f"excitation.{name}"] for name in names)
+    kind = known["effects.excitation"]
+
+    def size(omega: float) -> float:
+        return copysign(min(abs(amplitude), omega**2 * (limit or inf)), amplitude)
+
+    def since(time: float) -> float:
+        if kind == "Sine":
+            omega = 2 * pi * first
+            return size(omega) * risen(time, rise) * sin(omega * time + phase)
+        if kind == "HalfSine" and time < duration:
+            return float(amplitude * sin(pi * time / duration))
+        if kind == "LogSweep" and time < duration:
+            rate = log(last / first) / duration
+            omega = 2 * pi * first * exp(rate * time)
+            return size(omega) * sin((omega - 2 * pi * first) / rate + phase)
+        return 0.0
+
+    end = start + ((rise or inf) if kind == "Sine" else duration)
+    return lambda time: since(time - start) if time >= start else 0.0, start, end
 
 
 class System:

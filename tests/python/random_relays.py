@@ -17,7 +17,6 @@ import numpy as np
 
 from component import COMPONENT, ROOT
 from frictional import Frictional, FrictionalMotion
-from one_sided import shaking
 from reference import Reference
 from relay_contact import Array, RelayContactError, Value
 from relay_contact.component import sine
@@ -112,7 +111,7 @@ def second(relay: Relay, functions: int, tolerance: float) -> tuple[Array, int, 
     if isinstance(reference, Frictional):
         course = FrictionalMotion(reference, tolerance).solve(relay.times)
     else:
-        course = reference.course(relay.times, shaking(reference.values)[0], tolerance)
+        course = reference.course(relay.times, tolerance=tolerance)
     return course.forces["contact"], sum(map(len, course.changes.values())), reference.force_scale
 
 

@@ -17,7 +17,7 @@ from scipy.linalg import eig, eigh, expm
 from scipy.optimize import brentq
 
 from component import STARTS
-from one_sided import Acceleration, ClosedBy, Course, Law, System
+from one_sided import Acceleration, ClosedBy, Course, Law, System, shaking
 from relay_contact import Array, Values
 
 # Functions of Galerkin's method where solver.modes is not set. Where the beam is damped, the contact force of motion
@@ -204,13 +204,13 @@ class Reference:
         damping = np.diag(modes.damping) + self.contact_damping * contact
         return np.linalg.eigvals(np.block([[none, np.eye(len(none))], [-stiffness, -damping]]))
 
-    def linear_force(self, acceleration: Acceleration, step: float, steps: int) -> Array:
+    def linear_force(self, step: float, steps: int) -> Array:
         """Contact force of the linear contact, which can pull, at the multiples of a step from rest, N.
 
-        The acceleration is smooth within each step: its polynomial through six points is off by some
-        (omega step / 2)^6 / (6! 2^5) of it, 1e-10 at 1 kHz and 30 us.
+        The acceleration is that of the generator, smooth within each step: its polynomial through six points is off by
+        some (omega step / 2)^6 / (6! 2^5) of it, 1e-10 at 1 kHz and 30 us.
         """
-        modes = self.modes()
+        modes, (acceleration, *_) = self.modes(), shaking(self.values)
         n, omega = len(modes.tip), np.sqrt(modes.omega_squared)
         # Displacements times the angular frequency, velocities, and the acceleration with its derivatives, in steps.
         matrix = np.zeros((2 * n + 6, 2 * n + 6))
@@ -233,11 +233,13 @@ class Reference:
         return np.array(force)
 
     def course(
-        self, times: Array, base: Acceleration, tolerance: float = 1e-12, *, speed: float = 0.0, limit: float = 0.0
-    ) -> Course:
+        self, times: Array, base: Acceleration | None = None, tolerance: float = 1e-12, *, speed: float = 0.0,
+        limit: float = 0.0,
+    ) -> Course:  # fmt: skip
         """Solve the motion at increasing times, at rest at the first, for any contact law and axial force.
 
-        The fixed contact may come at a constant speed, m/s; `limit` is a force (N) whose instants are noted.
+        The acceleration is that of the generator, unless another one is given. The fixed contact may come at a constant
+        speed, m/s; `limit` is a force (N) whose instants are noted.
         """
         factor, power, offset, near = self.factor, self.power, self.overtravel, self.indentation
         if self.law not in ("Hertz", "Rough"):
@@ -246,7 +248,7 @@ class Reference:
         by: dict[str, ClosedBy] = {"Bonded": "nothing", "Linearised": "force"}
         row, closed_by = -self.modes().tip, by.get(self.law, "overlap")
         contact = Law("contact", row, factor, self.contact_damping, power, offset, speed, limit, closed_by)
-        spring = Spring(self, contact, near, base)
+        spring = Spring(self, contact, near, base or shaking(self.values)[0])
         spring.relative, spring.floor = tolerance, 1e9 * tolerance * spring.floor
         return spring.solve(times)
 

@@ -22,11 +22,6 @@ def shaken(values: Values, amplitude: float, tolerance: float) -> Values:
     return {**values, **sine(FREQUENCY, amplitude), "solver.tolerance": tolerance}
 
 
-def course(amplitude: float, time: Array | float) -> float:
-    """Give the acceleration of such a scene."""
-    return amplitude * float(np.sin(2 * np.pi * FREQUENCY * time))
-
-
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("acceleration", [300.0, -1000.0])
 def test_a_constant_acceleration_ends_in_the_equilibrium_of_the_law(law: str, acceleration: float) -> None:
@@ -65,11 +60,11 @@ def test_a_constant_acceleration_ends_in_the_equilibrium_of_the_law(law: str, ac
 @pytest.mark.parametrize("damping", [True, False])
 def test_the_force_of_a_law_under_vibration_until_the_contact_closes_again(law: str, damping: bool) -> None:
     tolerance, amplitude, stop = 1e-7, 400.0, 1.06e-3
-    values: Values = {**NO_AXIAL, "effects.contactLaw": law, "effects.contactDamping": damping}
-    result = run(shaken(values, amplitude, tolerance), stop, 1e-5, ["contact.force"])
-    reference = Reference(values)
+    own: Values = {**NO_AXIAL, "effects.contactLaw": law, "effects.contactDamping": damping}
+    values = shaken(own, amplitude, tolerance)
+    result, reference = run(values, stop, 1e-5, ["contact.force"]), Reference(values)
     # Its own error is a tenth of the tolerance at most.
-    expected = reference.course(result["time"], lambda time: course(amplitude, time)).forces["contact"]
+    expected = reference.course(result["time"]).forces["contact"]
     assert (np.min(expected) < 0) == (law == "Bonded")
     assert np.max(np.abs(result["contact.force"] - expected)) <= tolerance * reference.force_scale
 
@@ -125,12 +120,12 @@ def test_an_axial_force_changes_preload_and_frequency(name: str) -> None:
 @pytest.mark.parametrize("name", AXIAL)
 def test_an_axial_force_changes_the_force_under_vibration(name: str) -> None:
     tolerance, amplitude, stop = 1e-8, 4000.0 if "contact.overtravel" in AXIAL[name] else 98.0, 2e-3
-    result = run(shaken(AXIAL[name], amplitude, tolerance), stop, 1e-5, ["contact.force"])
-    reference = Reference(AXIAL[name])
-    others = [Reference({**AXIAL[name], "effects.axialForce": kind}) for kind in ("None", "FromPreload")]
+    values = shaken(AXIAL[name], amplitude, tolerance)
+    result, reference = run(values, stop, 1e-5, ["contact.force"]), Reference(values)
+    others = [Reference({**values, "effects.axialForce": kind}) for kind in ("None", "FromPreload")]
 
     def solved(model: Reference, own: float) -> Array:
-        return model.course(result["time"], lambda time: course(amplitude, time), own).forces["contact"]
+        return model.course(result["time"], tolerance=own).forces["contact"]
 
     expected = solved(reference, 1e-12)
     allowed = tolerance * reference.force_scale
@@ -167,11 +162,9 @@ TERMS: dict[str, Values] = {
 @pytest.mark.parametrize("name", TERMS)
 def test_a_term_of_the_beam_does_what_the_equations_say(name: str) -> None:
     tolerance, step, steps = 1e-9, 2e-5, 150
-    bonded: Values = {**NO_AXIAL, "effects.contactLaw": "Bonded"}
+    bonded = shaken({**NO_AXIAL, "effects.contactLaw": "Bonded"}, 98.0, tolerance)
     values = {**bonded, **TERMS[name]}
-    found = run(shaken(values, 98.0, tolerance), steps * step, step, ["contact.force"])["contact.force"]
-    expected, without = (
-        Reference(scene).linear_force(lambda time: course(98.0, time), step, steps) for scene in (values, bonded)
-    )
+    found = run(values, steps * step, step, ["contact.force"])["contact.force"]
+    expected, without = (Reference(scene).linear_force(step, steps) for scene in (values, bonded))
     assert np.max(np.abs(found - expected)) <= tolerance * Reference(values).force_scale
     assert np.max(np.abs(expected - without)) > 1e-4

@@ -160,8 +160,7 @@ def test_the_first_interruption_is_that_of_the_reference() -> None:
     limit = reference.force_of_resistance(threshold)
 
     def course(*times: float) -> Course:
-        sine = 2 * pi * 1000
-        return reference.course(np.array([0.0, *times]), lambda time: 400 * np.sin(sine * time), limit=limit)
+        return reference.course(np.array([0.0, *times]), limit=limit)
 
     changes = course(stop).changes
     (opening,), (closing,) = (changes["contact", way] for way in ("falls", "rises"))

@@ -19,6 +19,7 @@ from qualified import described, judged, placed
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values
 from relay_contact.command import main
+from relay_contact.component import sine as vibration
 from relay_contact.qualification import (
     FEW,
     Assessment,
@@ -119,10 +120,8 @@ def test_sine_like_the_exact_beam(paper: Assessment) -> None:
     # A second solution, vibrated for nine periods: of the start, 1e-9 is left.
     frequency = curves["frequency"][int(np.argmax(curves["length"]["closed contact"]))]
     stop = 9 / frequency
-    changes = SPECIMEN.course(
-        np.array([0.0, stop]), lambda time: 30 * G * float(np.sin(2 * np.pi * frequency * time)),
-        limit=SPECIMEN.force_of_resistance(600.0),
-    ).changes  # fmt: skip
+    shaken = Reference({**PUBLISHED, **vibration(frequency, 30 * G)})
+    changes = shaken.course(np.array([0.0, stop]), limit=SPECIMEN.force_of_resistance(600.0)).changes
     opened, closed = (changes["contact", way] for way in ("falls", "rises"))
     assert part.failed["closed contact"] == pytest.approx(closed[-1] - opened[len(closed) - 1], rel=2e-3)
     # The parameters are known to some per cent: a margin that differs from 1 by less decides nothing.
