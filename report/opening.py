@@ -27,14 +27,7 @@ UNIT = Sine("1 g", "", "measured", 1.0, 10.0, RANGE, 1.0)
 """At every frequency of the map 1 g, not limited by the displacement."""
 CONDITIONS = ("204 A", "204 B", "204 D")  # of MIL-STD-202 that the map shows
 DIGIT = 0.0005  # N, half a unit of the last digit of the published preload
-SHOCK = (
-    "test",
-    "shock",
-    "direction",
-    "opens at all",
-    "longest interruption",
-    "smallest force, relative to the preload",
-)
+SHOCK = "test", "shock", "direction", "opens at all", "longest interruption", "smallest force, relative to the preload"
 
 
 @cache

@@ -188,14 +188,9 @@ class Reference:
         inverse, shapes = eigh(mass, rigidity)
         omega_squared = 1 / inverse
         shapes = shapes * np.sqrt(omega_squared)
-        return Modes(
-            omega_squared,
-            self.values["beam.massDamping"] + self.values["beam.stiffnessDamping"] * omega_squared,
-            tip @ shapes,
-            tip_slope @ shapes,
-            (self.density * value @ weights + self.mass * tip) @ shapes,
-            shapes.T @ slopes @ shapes,
-        )
+        damping = self.values["beam.massDamping"] + self.values["beam.stiffnessDamping"] * omega_squared
+        load = (self.density * value @ weights + self.mass * tip) @ shapes
+        return Modes(omega_squared, damping, tip @ shapes, tip_slope @ shapes, load, shapes.T @ slopes @ shapes)
 
     def eigenvalues(self, contact: Array) -> Any:  # noqa: ANN401
         """Eigenvalues (1/s) of small motions of the modes, between which a contact has a matrix of stiffness."""

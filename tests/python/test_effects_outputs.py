@@ -46,13 +46,9 @@ def test_resistance_and_voltage_follow_from_the_force(
     kind: str, film: float, open_: float, law: str, source: float
 ) -> None:
     values: Values = {
-        "contact.openVoltage": source,
-        "effects.resistance": kind,
-        "effects.contactLaw": law,
-        "resistance.film": film,
-        "resistance.open": open_,
-        "contact.current": -0.1,
-    }
+        "effects.resistance": kind, "resistance.film": film, "resistance.open": open_, "effects.contactLaw": law,
+        "contact.openVoltage": source, "contact.current": -0.1,
+    }  # fmt: skip
     output = ["contact.force", "contact.resistance", "contact.conductance", "contact.voltage", "contact.closed"]
     result = run({**OPENING, **values}, 2e-3, 1e-5, output)
     force = result["contact.force"]
@@ -96,12 +92,9 @@ def test_without_resistance_its_outputs_are_zero_and_the_motion_is_the_same() ->
 def test_current_heats_the_closed_contact(current: float, melts: str, source: float) -> None:
     surroundings, melting, film = 350.0, 0.3, 0.01
     values: Values = {
-        "contact.current": current,
-        "contact.meltingVoltage": melting,
-        "contact.openVoltage": source,
-        "resistance.film": film,
-        "environment.temperature": surroundings,
-    }
+        "contact.current": current, "contact.openVoltage": source, "contact.meltingVoltage": melting,
+        "resistance.film": film, "environment.temperature": surroundings,
+    }  # fmt: skip
     output = ["contact.force", "contact.temperature"]
     cold = run({**OPENING, **values}, 2e-3, 1e-5, output)
     hot = run({**OPENING, **values, "effects.heating": True}, 2e-3, 1e-5, output)

@@ -16,13 +16,9 @@ TOLERANCE, STEP = 1e-6, 5e-6
 LOCATED = 1e-9
 # Contacts that differ in radius and damping, with so little damping that they bounce.
 CHANGEOVER: Values = {
-    "effects.axialForce": "None",
-    "effects.secondContact": True,
-    "contact.damping": 1e-6,
-    "second.damping": 3e-6,
-    "second.curvatureRadius": 5e-3,
-    "solver.tolerance": TOLERANCE,
-}
+    "effects.axialForce": "None", "effects.secondContact": True, "solver.tolerance": TOLERANCE,
+    "contact.damping": 1e-6, "second.damping": 3e-6, "second.curvatureRadius": 5e-3,
+}  # fmt: skip
 SIDES = ("contact", "second")
 MONITORS = ("chatter", "second")
 OUTPUTS = [

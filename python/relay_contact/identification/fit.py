@@ -178,15 +178,9 @@ class Fit:
         free = len(self.logarithms) - len(self.unknowns)
         low, high = ([getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items())
         found = least_squares(
-            self.residuals,
-            np.clip(self.logarithms, low, high),
-            jacobian,
-            bounds=(low, high),
-            ftol=ENOUGH,
-            xtol=100 * ENOUGH,
-            gtol=None,
-            max_nfev=TRIALS,
-        )
+            self.residuals, np.clip(self.logarithms, low, high), jacobian, bounds=(low, high), ftol=ENOUGH,
+            xtol=100 * ENOUGH, gtol=None, max_nfev=TRIALS,
+        )  # fmt: skip
         if found.status == 0:
             text = "begin from other values in the relay's file"
             raise RelayContactError(f"no least squares after {TRIALS} trials: {text}")
