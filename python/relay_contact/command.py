@@ -86,7 +86,7 @@ def list_variables(component: Component, text: str) -> None:
 
 
 def run_scene(given: argparse.Namespace) -> None:
-    """Run a scene, write its table and figure, and print a summary."""
+    """Run a scene; write its outputs as a table (CSV, SI units) and as a figure (PNG)."""
     from relay_contact.plot import draw, sweep_of
 
     component = Component(given.fmu)
@@ -125,7 +125,7 @@ def run_scene(given: argparse.Namespace) -> None:
 
 
 def write_parameters(given: argparse.Namespace) -> None:
-    """Write what scenes change as parameter sets of SSP 1.0."""
+    """Write the parameters that scenes change as parameter sets of SSP 1.0, NAME.ssv."""
     from relay_contact.ssp import parameter_set
 
     component = Component(given.fmu)
@@ -137,7 +137,7 @@ def write_parameters(given: argparse.Namespace) -> None:
 
 
 def qualify_relay(given: argparse.Namespace) -> None:
-    """Test a relay as a standard asks, or under measured records, and print the verdicts."""
+    """Test a relay by a standard or a measured record. Write verdicts, margins and intervals as a page and tables."""
     from relay_contact.qualification import qualify
     from relay_contact.qualification.page import FILES, PDF, UNKNOWN
     from relay_contact.qualification.words import HEAD, MARKS, UNREAD, rows
@@ -172,7 +172,7 @@ def qualify_relay(given: argparse.Namespace) -> None:
 
 
 def compare_runs(given: argparse.Namespace) -> None:
-    """Compare a run with a measurement: interruptions, or resistance over time."""
+    """Compare a run with a chatter log or a measured resistance: counts, durations and a figure."""
     from relay_contact.comparison import HEAD, compare
 
     found = compare(given.run, given.measured, out=given.out, threshold=given.threshold, shift=given.shift)
@@ -195,7 +195,7 @@ def identify_relay(given: argparse.Namespace) -> None:
 
 
 def explore(given: argparse.Namespace) -> None:
-    """Open the page that runs the simulation, and print its address."""
+    """Open a page in the browser that simulates as sliders move: force, resistance, level that opens the contact."""
     page = page_path()
     if not page.is_file():
         raise RelayContactError("the page is not in this installation: `cargo xtask explore` builds it")
@@ -212,7 +212,7 @@ def print_table(rows: list[list[str]]) -> None:
 
 
 def plot_table(given: argparse.Namespace) -> None:
-    """Draw a table of outputs."""
+    """Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."""
     from relay_contact.plot import draw
 
     if given.sweep:
@@ -252,21 +252,17 @@ def line() -> argparse.ArgumentParser:
     common.add_argument("--fmu", type=Path, default=fmu_path(), help="another component (%(default)s)")
 
     def command(name: str, act: Callable[[argparse.Namespace], None], text: str, **more: Any) -> Callable[..., Any]:  # noqa: ANN401
-        """Add a command; return what adds arguments to it."""
-        one = commands.add_parser(name, help=text, **({"parents": [common]} | more))
+        """Add a command, described by what acts unless otherwise; return what adds arguments to it."""
+        one = commands.add_parser(name, help=text, **({"parents": [common], "description": act.__doc__} | more))
         one.set_defaults(act=act)
         return one.add_argument
 
-    add = command("list", list_all, "list scenes, relays and standards, or variables")
+    add = command("list", list_all, "list scenes, relays and standards, or variables", description=None)
     add("--variables", nargs="?", const="", metavar="TEXT", help="variables with TEXT in their names, or all")
-    add(
-        "--relay",
-        metavar="FILE",
-        help="only the contact of this relay: its size, and whether it is smooth enough for Hertz's law",
-    )
+    text = "only the contact of this relay: its size, and whether it is smooth enough for Hertz's law"
+    add("--relay", metavar="FILE", help=text)
 
-    about = "Run a scene; write its outputs as a table (CSV, SI units) and as a figure (PNG)."
-    add = command("run", run_scene, "run a scene: table and figure", description=about)
+    add = command("run", run_scene, "run a scene: table and figure")
     add("scene", help="name of a scene, as `relay-contact list` prints them, or path of a scene file of your own")
     text = "another value for a parameter or a constant input, SI units; may be repeated"
     add("--set", action="append", default=[], metavar="NAME=VALUE", help=text)
@@ -276,10 +272,7 @@ def line() -> argparse.ArgumentParser:
     add("--step", type=positive, metavar="SECONDS", help="communication step (the scene's)")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
-    about = (
-        "Test a relay by a standard or a measured record. Write verdicts, margins and intervals as a page and tables."
-    )
-    add = command("qualify", qualify_relay, "test a relay by a standard or a record", description=about)
+    add = command("qualify", qualify_relay, "test a relay by a standard or a record")
     add("relay", help="name of a relay, as `relay-contact list` prints them, or path of a relay file of your own")
     add("--standard", metavar="NAME", help="name of a standard, or path of a file of your own")
     text = "a measured acceleration as a test: CSV, MDF4, UFF58, TDMS or .mat, each channel by itself; may be repeated"
@@ -290,19 +283,15 @@ def line() -> argparse.ArgumentParser:
     add("--test", action="append", default=[], metavar="TEXT", help=text)
     add("--quick", action="store_true", help="fewer frequencies in the figures; the margins are the same")
     add("--workers", type=int, metavar="COUNT", help="threads that run tests side by side (one for each core)")
-    add(
-        "--cluster",
-        metavar="ADDRESS",
-        help="of a Dask cluster whose workers have this package, such as tcp://host:8786",
-    )
+    text = "of a Dask cluster whose workers have this package, such as tcp://host:8786"
+    add("--cluster", metavar="ADDRESS", help=text)
     add("--pdf", action="store_true", help="the page as PDF, too (pip install 'relay-contact[pdf]')")
     text = "date to write on the page, today's if none follows; without it each run writes the same bytes"
     add("--date", nargs="?", const=date.today().isoformat(), default="", metavar="DATE", help=text)
     text = "folder for what is written (qualification-RELAY-STANDARD); finished tests found there are not run again"
     add("--out", type=Path, metavar="FOLDER", help=text)
 
-    about = "Write the parameters that scenes change as parameter sets of SSP 1.0, NAME.ssv."
-    add = command("ssv", write_parameters, "write scenes as SSP parameter sets", description=about)
+    add = command("ssv", write_parameters, "write scenes as SSP parameter sets")
     add("scene", nargs="*", help="names or files of scenes; without them all scenes included")
     add("--plain", action="store_true", help="for the component in which all numbers are Reals: NAME-plain.ssv")
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
@@ -315,14 +304,10 @@ def line() -> argparse.ArgumentParser:
     add("--parameter", action="append", metavar="NAME", help=text)
     add("--out", type=Path, metavar="FOLDER", help="folder for what is written (identification-RELAY)")
 
-    about = (
-        "Open a page in the browser that simulates as sliders move: force, resistance, level that opens the contact."
-    )
-    add = command("explore", explore, "simulate in the browser, with sliders", description=about, parents=[])
+    add = command("explore", explore, "simulate in the browser, with sliders", parents=[])
     add("--print", action="store_true", help="only print its address")
 
-    about = "Compare a run with a chatter log or a measured resistance: counts, durations and a figure."
-    add = command("compare", compare_runs, "compare a run with a measurement", description=about, parents=[])
+    add = command("compare", compare_runs, "compare a run with a measurement", parents=[])
     add("run", type=Path, help="table of `relay-contact run`, with contact.resistance")
     add("measured", type=Path, help="CSV: start and duration of interruptions, or time and resistance")
     text = "resistance [Ohm] above which the contact is interrupted (%(default)g)"
@@ -331,18 +316,11 @@ def line() -> argparse.ArgumentParser:
     add("--shift", type=finite, metavar="SECONDS", help=text)
     add("--out", type=Path, default=Path(), metavar="FOLDER", help="folder for what is written (the current one)")
 
-    about = "Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."
-    add = command("plot", plot_table, "draw a table of outputs", description=about)
+    add = command("plot", plot_table, "draw a table of outputs")
     add("table", type=Path, help="CSV file with a column `time`")
     add("--title", default="", help="title of the figure")
-    sweep = ("FIRST", "LAST", "START", "DURATION")
-    add(
-        "--sweep",
-        type=finite,
-        nargs=4,
-        metavar=sweep,
-        help="draw over the frequency of a logarithmic sweep [Hz, s] instead of time",
-    )
+    text = "draw over the frequency of a logarithmic sweep [Hz, s] instead of time"
+    add("--sweep", type=finite, nargs=4, metavar=("FIRST", "LAST", "START", "DURATION"), help=text)
     return whole
 
 
