@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, TypeAdapter
+from pydantic import BaseModel, ConfigDict
 
 from relay_contact import Component, Result, Scene, run
 from report.callgrind import LENGTH, Minimal
@@ -43,7 +43,7 @@ class Effect(BaseModel):
 def effects() -> list[Effect]:
     """Return the list of effects, those first that others are compared with."""
     content = tomllib.loads((Path(__file__).parent / "effects.toml").read_text(encoding="utf-8"))
-    return TypeAdapter(list[Effect]).validate_python(content["effect"])
+    return [Effect(name=name, **own) for name, own in content.items()]
 
 
 def code(settings: Mapping[str, str]) -> str:
