@@ -14,19 +14,9 @@ import pytest
 from fmpy import simulate_fmu
 
 from component import COMPONENT, FMU, ROOT
-from relay_contact import (
-    Component,
-    Contact,
-    RelayContactError,
-    RelayContactWarning,
-    Scene,
-    Values,
-    qualification,
-    read_table,
-    run,
-)
+from relay_contact import RelayContactError, RelayContactWarning, Scene, Values, qualification, read_table, run
 from relay_contact.command import main
-from relay_contact.component import sine
+from relay_contact.component import Component, Contact, sine
 
 
 def test_a_run_has_names_and_units() -> None:

@@ -20,24 +20,12 @@ from reference import Reference
 from relay_contact import Array, RelayContactError, Values
 from relay_contact.command import main
 from relay_contact.component import sine as vibration
-from relay_contact.qualification import (
-    FEW,
-    Assessment,
-    Finding,
-    Relay,
-    Standard,
-    Tested,
-    assessment,
-    judgement,
-    plots,
-    qualify,
-    response,
-    standards,
-)
+from relay_contact.qualification import FEW, Relay, Standard, assessment, judgement, plots, qualify, response, standards
 from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.page import write
 from relay_contact.qualification.response import respond
+from relay_contact.qualification.results import Assessment, Finding, Tested
 from relay_contact.qualification.trials import Specimen, steady
 
 G = 9.80665
