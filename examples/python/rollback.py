@@ -29,6 +29,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import pandas as pd
 from tqdm import tqdm
 
 from circuit import Circuit, State
@@ -57,6 +58,9 @@ LOOKS = {
 class Master:
     """The coupled pair at a communication point, and how it got there."""
 
+    method: str
+    setting: float
+    """Tolerance, or step [s]."""
     contact: Contact
     conductance: float
     state: State
@@ -68,6 +72,8 @@ class Master:
     """FMU states saved and not freed yet."""
     seconds: float = 0.0
     """Wall time."""
+    error: float = 0.0
+    """Largest error of the load current [A]."""
     rows: list[list[float]] = field(default_factory=list)
     """For every accepted communication step: start, length, load current and capacitor voltage there, conductance."""
 
@@ -88,10 +94,10 @@ class Master:
         return np.array([CIRCUIT.after((i, q), mean, time - start)[0] for (start, _, i, q, mean), time in steps])
 
 
-def begin(contact: Contact) -> Master:
+def begin(method: str, setting: float, contact: Contact) -> Master:
     """Give the pair in the steady state of the closed contact."""
     conductance = contact.get("contact.conductance")
-    return Master(contact, conductance, CIRCUIT.at_rest(conductance))
+    return Master(method, setting, contact, conductance, CIRCUIT.at_rest(conductance))
 
 
 def follow(master: Master, points: list[tuple[float, float]]) -> None:
@@ -142,26 +148,14 @@ def adapt(master: Master, stop: float, tolerance: float, events: bool) -> None:
         length = max(wanted / 4, factor * length)
 
 
-@dataclass
-class Run:
-    """A finished run."""
-
-    method: str
-    setting: float
-    """Tolerance, or step [s]."""
-    master: Master
-    error: float = 0.0
-    """Largest error of the load current [A]."""
-
-
-def draw(runs: list[Run], path: Path) -> None:
+def draw(masters: list[Master], path: Path) -> None:
     """Draw the error over the cost, and the steps chosen around the first opening."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8), layout="constrained")
     for method, (colour, marker, label) in LOOKS.items():
-        chosen = [run for run in runs if run.method == method]
-        errors = [1e3 * run.error for run in chosen]
-        left.loglog([run.master.work for run in chosen], errors, marker=marker, color=colour, label=label)
-        shown = next((run.master for run in chosen if run.setting == SHOWN), None)
+        chosen = [each for each in masters if each.method == method]
+        errors = [1e3 * each.error for each in chosen]
+        left.loglog([each.work for each in chosen], errors, marker=marker, color=colour, label=label)
+        shown = next((each for each in chosen if each.setting == SHOWN), None)
         if shown:
             start, length = np.array(shown.rows).T[:2]
             right.semilogy(1e3 * start, 1e6 * length, marker=marker, markersize=4, color=colour, linewidth=0.6)
@@ -186,41 +180,36 @@ def main() -> int:
     settings = [("adaptive with events", REFERENCE), *(("fixed", length) for length in lengths)]
     settings += [(method, tolerance) for method in ("adaptive", "adaptive with events") for tolerance in TOLERANCES]
     times: Array = np.linspace(0.0, stop, round(stop / 1e-6), endpoint=False)
-    runs: list[Run] = []
+    masters: list[Master] = []
     for method, setting in (bar := tqdm(settings, unit="run")):
         bar.set_description(f"{method}, {setting:g}")
         with component.started(Scene.read("chatter-41g").values) as contact:
-            master, started = begin(contact), clock.perf_counter()
+            master, started = begin(method, setting, contact), clock.perf_counter()
             if method == "fixed":
                 follow(master, [(index * setting, setting) for index in range(round(stop / setting))])
             else:
                 adapt(master, stop, setting, method != "adaptive")
             master.seconds = clock.perf_counter() - started
-        runs.append(Run(method, setting, master))
-    exact = runs[0].master.currents(times)
+        masters.append(master)
+    exact, compared = masters[0].currents(times), masters[1:]
+    for master in compared:
+        master.error = float(np.abs(master.currents(times) - exact).max())
     # The accepted steps again, without repeating any: nothing of the rejected steps may be left in the result.
-    shown = next(run.master for run in runs if run.method == "adaptive with events" and run.setting == SHOWN)
+    shown = next(each for each in compared if (each.method, each.setting) == ("adaptive with events", SHOWN))
     with component.started(Scene.read("chatter-41g").values) as contact:
-        again = begin(contact)
+        again = begin(shown.method, SHOWN, contact)
         follow(again, [(row[0], row[1]) for row in shown.rows])
     same = again.rows == shown.rows and again.state == shown.state
-    print(f"{'master':20} {'setting':>10} {'doSteps':>8} {'repeated':>11} {'wall time':>10} {'maximum error':>14}")
-    for run in runs[1:]:
-        run.error = float(np.abs(run.master.currents(times) - exact).max())
-        setting = f"{1e6 * run.setting:g} us" if run.method == "fixed" else f"{run.setting:g}"
-        cost = f"{run.master.work:8} {run.master.rejected:11} {1e3 * run.master.seconds:7.0f} ms"
-        print(f"{run.method:20} {setting:>10} {cost} {1e3 * run.error:11.5f} mA")
+    rows = [[each.method, each.setting, each.work, each.rejected, each.seconds, each.error] for each in compared]
+    columns = ["master", "setting", "steps.done", "steps.repeated", "wallTime", "error.load.current"]
+    table = pd.DataFrame(rows, columns=columns)
+    print(f"{table.to_string(index=False, float_format='{:.3g}'.format)}\nfixed steps and wall times in s, errors in A")
     print(f"the accepted steps again without repetition: {'the same bits' if same else 'DIFFERENT RESULTS'}")
-    print(f"FMU states not freed: {sum(run.master.states for run in runs)}")
+    print(f"FMU states not freed: {sum(each.states for each in masters)}")
     paths = [given.out / f"rollback{end}" for end in (".csv", "-steps.csv", ".png")]
-    with paths[0].open("w", encoding="utf-8") as file:
-        file.write("master,setting,steps.done,steps.repeated,wallTime,error.load.current\n")
-        for run in runs[1:]:
-            master = run.master
-            values = f"{run.setting:g},{master.work},{master.rejected},{master.seconds:.6f},{run.error:.12g}"
-            file.write(f"{run.method},{values}\n")
+    table.to_csv(paths[0], index=False, float_format="%.12g")
     write_table(paths[1], "time,step,load.current,capacitor.voltage,contact.conductance.mean", shown.rows, digits=17)
-    draw(runs[1:], paths[2])
+    draw(compared, paths[2])
     print(*paths, sep="\n")
     return 0 if same else 1
 
