@@ -8,11 +8,10 @@ back, of closed to open.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from math import copysign, pi, sqrt
+from math import copysign, sqrt
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from component import STARTS
 from one_sided import CLOSED, Law, System, shaking
@@ -105,24 +104,9 @@ class Frictional(Reference):
         pushed = (per_force + per_moment * self.height * self.share) * self.elastic(indentation)
         return float(deflection - pushed - per_acceleration * self.gravity)
 
-    def sticking_by_modes(self) -> float:
-        """Lowest natural frequency of the contact that sticks, under a constant axial force, by the modes, Hz."""
-        modes = self.modes()
-        matrix = np.diag(modes.omega_squared) + self.tangent * np.outer(modes.tip, modes.tip)
-        matrix += self.height**2 * self.tangential * np.outer(modes.rotation, modes.rotation)
-        return sqrt(np.linalg.eigvalsh(matrix)[0]) / (2 * pi)
-
     def sticking_frequency(self) -> float:
-        """Give the same from the characteristic equation: springs against deflection and rotation of the tip, Hz."""
-        springs = np.diag([self.tangent, self.height**2 * self.tangential])
-
-        def determinant(frequency: float) -> float:
-            flexible = self.responses(2 * pi * frequency, self.axial_force, False)[:, :2].real
-            return float(np.linalg.det(np.eye(2) + flexible @ springs))
-
-        # Between poles, the resonances of the spring alone; the modes say where.
-        near = self.sticking_by_modes()
-        return float(brentq(determinant, (1 - 1e-6) * near, (1 + 1e-6) * near, xtol=1e-12, rtol=1e-14))
+        """Lowest natural frequency of the contact that sticks, under a constant axial force, Hz; exact."""
+        return self.frequency(self.height**2 * self.tangential)
 
     def growth(self, force: float, sign: float) -> complex:
         """Give the eigenvalue (1/s) that grows fastest of small motions about slip, at a contact force (N)."""

@@ -156,17 +156,21 @@ class Reference:
         per_force, per_acceleration = self.compliances(omega, self.axial_force)
         return complex(-contact * per_acceleration / (1 + contact * per_force))
 
-    def frequency(self) -> float:
-        """Lowest natural frequency with the contact as a spring, under a constant axial force, Hz; exact."""
+    def frequency(self, turning: float = 0.0) -> float:
+        """Lowest natural frequency with the contact as a spring, under a constant axial force, Hz; exact.
+
+        Another spring (N m) may hold the tip against rotation.
+        """
+        springs, modes = np.diag([self.tangent, turning]), self.modes()
 
         def determinant(frequency: float) -> float:
-            return float(1 + self.tangent * self.compliances(2 * pi * frequency, self.axial_force, False)[0].real)
+            flexible = self.responses(2 * pi * frequency, self.axial_force, False)[:, :2].real
+            return float(np.linalg.det(np.eye(2) + flexible @ springs))
 
-        # Resonances of the cantilever alone are poles, from which it rises to zeros.
-        above, step = 1.0, 10.0
-        while determinant(above) > 0 or determinant(above + step) <= 0:
-            above += step
-        return float(brentq(determinant, above, above + step, xtol=1e-12, rtol=1e-14))
+        # Between poles, the resonances of the spring alone; the modes say where.
+        tip = np.array([modes.tip, modes.rotation])
+        near = sqrt(np.linalg.eigvalsh(np.diag(modes.omega_squared) + tip.T @ springs @ tip)[0]) / (2 * pi)
+        return float(brentq(determinant, (1 - 1e-4) * near, (1 + 1e-4) * near, xtol=1e-12, rtol=1e-14))
 
     def modes(self) -> Modes:
         """Modes by Galerkin's method, with the functions x^2 times the Legendre polynomials."""
