@@ -277,41 +277,27 @@ def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
 
 def remarks(fit: Fit, each: Set, model: Array) -> list[str]:
     """Tell where a measurement does not agree with the model."""
-    measurement, told = each.measurement, []
-    left = each.differences(model)
+    own, left = each.measurement, each.differences(model)
     together = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), 1e-300))
-    if together > REGULAR / np.sqrt(len(left)):
-        told.append(
-            f"{measurement.name}: neighbouring residuals are alike (correlation {together:.2f}): model or measurement "
-            "is off by more than scatter, and the intervals are too narrow"
-        )
-    if each.ring:
-        misfit = float((fit.left(each, fit.logarithms) ** 2).sum())
-        # Of the two residuals, in units of their scatter: chi squared.
-        if np.exp(-misfit / 2) < CONTRADICT:
-            told.append(
-                f"{measurement.name}: frequency or rate of decay do not agree with the other data, or with parameters "
-                "that are not sought: the intervals are too narrow"
-            )
-    elif not measurement.calibration and measurement.kind != BOUNCE:
-        told.append(
-            f"{measurement.name}: without a line `# calibration = …` its instrument is taken as exact; the intervals "
-            "tell the scatter alone"
-        )
-    factor = float(np.exp(fit.calibration(each, fit.logarithms)))
-    if measurement.calibration and abs(factor - 1) > measurement.calibration:
-        text = f"would have to show {100 * (factor - 1):+.1f} %, more than its {100 * measurement.calibration:g} %"
-        told.append(f"{measurement.name}: the instrument {text}")
-    if measurement.kind == RESPONSE and not measurement.is_open and measurement.quantity == "force":
-        values = fit.values(measurement.position, fit.logarithms)
-        laboratory = fit.laboratory
-        preload = laboratory.rest("preload.force", laboratory.conditions(measurement, values))
-        if (model > OPENS * preload).any():
-            at = measurement.over[int(np.argmax(model > OPENS * preload))]
-            told.append(
-                f"{measurement.name}: the contact opens, at {at:.4g} Hz for one: a frequency response is that of a "
-                "contact that stays closed; leave such rows out, or measure at a lower level"
-            )
-    if measurement.kind == FORCE and (model <= 0).any():
-        told.append(f"{measurement.name}: rows in which the contact is open tell nothing")
-    return told
+    # Of the two residuals of a ring-down, in units of their scatter: chi squared.
+    misfit = float((fit.left(each, fit.logarithms) ** 2).sum()) if each.ring else 0.0
+    off = float(np.exp(fit.calibration(each, fit.logarithms))) - 1
+    preload = np.inf
+    if own.kind == RESPONSE and not own.is_open and own.quantity == "force":
+        conditions = fit.laboratory.conditions(own, fit.values(own.position, fit.logarithms))
+        preload = fit.laboratory.rest("preload.force", conditions)
+    opens = model > OPENS * preload
+    told = {
+        f"neighbouring residuals are alike (correlation {together:.2f}): model or measurement is off by more than "
+        "scatter, and the intervals are too narrow": together > REGULAR / np.sqrt(len(left)),
+        "frequency or rate of decay do not agree with the other data, or with parameters that are not sought: the "
+        "intervals are too narrow": np.exp(-misfit / 2) < CONTRADICT,
+        "without a line `# calibration = …` its instrument is taken as exact; the intervals tell the scatter alone":
+            not (each.ring or own.calibration or own.kind == BOUNCE),
+        f"the instrument would have to show {100 * off:+.1f} %, more than its {100 * own.calibration:g} %":
+            0 < own.calibration < abs(off),
+        f"the contact opens, at {own.over[int(np.argmax(opens))]:.4g} Hz for one: a frequency response is that of a "
+        "contact that stays closed; leave such rows out, or measure at a lower level": opens.any(),
+        "rows in which the contact is open tell nothing": own.kind == FORCE and (model <= 0).any(),
+    }  # fmt: skip
+    return [f"{own.name}: {text}" for text, true in told.items() if true]
