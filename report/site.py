@@ -14,20 +14,11 @@ from markdown_it.token import Token
 ROOT = Path(__file__).parents[1]
 # All pages, by their paths from the top folder.
 PAGES = [path.relative_to(ROOT).as_posix() for folder in (ROOT, ROOT / "docs") for path in sorted(folder.glob("*.md"))]
-PYTHON = "\n\n".join(
-    [
-        "# Python interface",
-        "::: relay_contact",
-        "::: relay_contact.qualification.qualify",
-        "::: relay_contact.qualification.Assessment",
-        "::: relay_contact.qualification.Tested",
-        "::: relay_contact.qualification.Finding",
-        "::: relay_contact.qualification.results.Margin",
-        "::: relay_contact.qualification.results.Chance",
-        "::: relay_contact.comparison.compare",
-        "::: relay_contact.identification.identify",
-    ]
-)
+NAMES = (
+    "", ".qualification.qualify", ".qualification.Assessment", ".qualification.Tested", ".qualification.Finding",
+    ".qualification.results.Margin", ".qualification.results.Chance", ".comparison.compare", ".identification.identify",
+)  # fmt: skip
+PYTHON = "\n\n".join(["# Python interface", *(f"::: relay_contact{name}" for name in NAMES)])
 
 
 def tokens(page: str) -> list[Token]:
