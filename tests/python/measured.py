@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import Reference
-from relay_contact import Array, Value, Values
+from relay_contact import Array, Value, Values, write_table
 from relay_contact.identification.measurement import FORCE, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.measurement import FREQUENCY as FREQUENCIES
 
@@ -96,11 +96,9 @@ def files(folder: Path, measured: dict[str, Array]) -> dict[str, Path]:
                      (FREQUENCY, np.full(len(FREQUENCY), 20.0), 1e3 * measured["response"])),
         "chatter": ("frequency [kHz],level [g]", (1e-3 * LEVELS, measured["chatter"] / 9.80665)),
     }  # fmt: skip
-    paths = {}
+    paths = {name: folder / f"{name}.csv" for name in columns}
     for name, (head, values) in columns.items():
-        paths[name] = folder / f"{name}.csv"
-        rows = [",".join(f"{each:.9g}" for each in row) for row in zip(*values, strict=True)]
-        paths[name].write_text("\n".join(["# made by the second solution", head, *rows]) + "\n", encoding="utf-8")
+        write_table(paths[name], f"# made by the second solution\n{head}", np.column_stack(values), digits=9)
     return paths
 
 

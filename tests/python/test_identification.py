@@ -96,8 +96,7 @@ def test_intervals_of_a_parameter_hold_the_true_value(cell: Callable[[int], Arra
 def rough_files(folder: Path, values: Array) -> tuple[Path, Path]:
     """Write frequencies over the overtravel, and the file of a relay with a rough contact; give their paths."""
     data, relay = folder / "frequency.csv", folder / "relay.toml"
-    rows = [f"{1e3 * over:.9g},{value:.9g}" for over, value in zip(measured.OVERTRAVELS, values, strict=True)]
-    data.write_text("overtravel [mm],frequency [Hz]\n" + "\n".join(rows) + "\n")
+    write_table(data, "overtravel [mm],frequency [Hz]", np.column_stack([1e3 * measured.OVERTRAVELS, values]), digits=9)
     relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in measured.ROUGH_GUESSED.items()))
     return data, relay
 
@@ -160,9 +159,8 @@ def asked(tmp_path: Path, measurements: list[Measurement], *parameters: str) -> 
     for each in measurements:
         paths.append(tmp_path / f"{len(paths)}-{each.path}")
         over = {"static force": "travel", "ring-down": "time"}[each.kind]
-        head = f"# calibration = {each.calibration}\n{over},{each.quantity}\n"
-        rows = (f"{x!r},{y!r}" for x, y in zip(each.over.tolist(), each.values.tolist(), strict=True))
-        paths[-1].write_text(head + "\n".join(rows) + "\n")
+        head = f"# calibration = {each.calibration}\n{over},{each.quantity}"
+        write_table(paths[-1], head, np.column_stack([each.over, each.values]))
     return found(*paths, relay=relay, parameters=list(parameters or measured.RINGING))
 
 
@@ -249,8 +247,8 @@ def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     ):
         assert any(re.search(told, note) for note in asked(tmp_path, data, *sought).notes), told
     assert asked(tmp_path, [force], "contact.overtravel", stiffness).notes == []
-    rows = [f"{f},400,{20 * value}" for f, value in zip(measured.FREQUENCY, CLEAN["response"], strict=True)]
-    (tmp_path / "strong.csv").write_text("\n".join(["frequency [Hz],acceleration [m/s2],force [N]", *rows]) + "\n")
+    rows = np.transpose(np.broadcast_arrays(measured.FREQUENCY, 400.0, 20 * CLEAN["response"]))
+    write_table(tmp_path / "strong.csv", "frequency [Hz],acceleration [m/s2],force [N]", rows)
     _, opens, *models = found(tmp_path / "strong.csv", parameters=[damping]).notes
     assert "the contact opens, at " in opens
     assert len(models) == 2
@@ -351,8 +349,8 @@ def test_an_uncertain_spring_of_the_fixed_contact_widens_the_interval(tmp_path: 
     for travel in np.linspace(-1e-4, 1e-4, 5):
         values: Values = {"fixed.file": str(strip), "contact.overtravel": 2e-4 + travel}
         force, moving, fixed = resting(values, "contact.force", "tip.displacement", "fixed.displacement")
-        rows.append(f"{travel},{force}")
-    data.write_text("travel,force\n" + "\n".join(rows) + "\n")
+        rows.append((travel, force))
+    write_table(data, "travel,force", rows)
     result = found(data, relay=relay, parameters=["beam.youngsModulus"])["beam.youngsModulus"]
     assert result.value == pytest.approx(COMPONENT.value({}, "beam.youngsModulus"), rel=1e-6)
     share = fixed / (fixed - moving)
@@ -373,8 +371,8 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
         stiffness = force / (1e-3 - indentation)
         travel = np.linspace(-2e-4, 2e-4, 5)
         paths.append(tmp_path / f"{number}.csv")
-        rows = [f"{x},{stiffness * (overtravel + x - indentation)}" for x in travel]
-        paths[-1].write_text(f"# position = {position}\ntravel,force\n" + "\n".join(rows) + "\n")
+        rows = np.column_stack([travel, stiffness * (overtravel + travel - indentation)])
+        write_table(paths[-1], f"# position = {position}\ntravel,force", rows)
     out = tmp_path / "found"
     result = found(*paths, relay=file, parameters=["contact.overtravel", "spring.stiffness"], out=out)
     written = Relay.read(out / "relay.toml", COMPONENT)
