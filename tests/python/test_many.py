@@ -63,7 +63,7 @@ def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("stop = -1\n")
     bad: dict[Any, tuple[Case, str]] = {
-        1: (("chatter-41", {}), r"chatter-41: no such file, and no scene"),
+        1: ("chatter-41", r"chatter-41: no such file, and no scene of this name; there are armature-shock, at-rest"),
         2: ((CHATTER, {"excitation.frequenzy": 1.0}), r"did you mean excitation.frequency\?"),
         3: ((CHATTER, {"beam.length": -1.0}), r"^beam.length = -1 m: not allowed, allowed is"),
         # Found as it is initialised, and as it steps.
