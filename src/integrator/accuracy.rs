@@ -57,7 +57,7 @@ impl<const S: usize> Whole<'_, S> {
     /// What the forces of closed contacts differ from those of their laws where they turn, N, at the motion that also has the velocities
     /// at the nodes: polynomials through fewer nodes do not show how a law bends near zero force, and a fast vibration may be at its
     /// zero at all of them. Not looked at where next terms are far below the error `allowed`.
-    pub(crate) fn unlawful(&self, allowed: f64) -> f64 {
+    pub(crate) fn law_residual(&self, allowed: f64) -> f64 {
         let Self { model, state, collocation, trial, length, .. } = *self;
         if trial.next_terms < LOOKED * allowed || collocation.variable == Variable::Root {
             return 0.0;

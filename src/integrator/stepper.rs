@@ -111,9 +111,9 @@ impl Stepper<'_> {
             } else {
                 0.0
             };
-        let unlawful = if watched && closed { whole.unlawful(allowed) / allowed } else { 0.0 };
+        let law_residual = if watched && closed { whole.law_residual(allowed) / allowed } else { 0.0 };
         // It only rejects.
-        let inside = if unlawful > 1.0 { inside.max(unlawful) } else { inside };
+        let inside = if law_residual > 1.0 { inside.max(law_residual) } else { inside };
         let all = self.passing();
         let [ratio, own] = [all, all.min(INHERITED)].map(|share| {
             let ratio = trial.error.with(share) / model.tolerance.step.max(trial.rounding);
