@@ -160,7 +160,7 @@ def write() -> Path:
     for figure in figures(measured):
         figure.write(PICTURES)
     timed = measured[(measured.part != "modes") & measured.seconds_per_second.notna()]
-    parts = timed.seconds_per_second / timed.least_seconds_per_second
+    parts = timed.median_seconds_per_second / timed.seconds_per_second
     costs = timed[timed.part == "delivered"].set_index(["scene", "tolerance"]).seconds_per_second
     failed = measured[measured.outcome != OK]
     fine, coarse = (1e-6, 1e-7, 1e-8, 1e-9), (1e-2, 1e-4, 1e-6, 1e-8)

@@ -17,7 +17,7 @@ struct Arguments {
     /// Few settings and one round
     #[arg(long)]
     quick: bool,
-    /// How often each run is timed; the median counts
+    /// How often each run is timed; the shortest counts
     #[arg(long, default_value_t = 7)]
     turns: usize,
 }
