@@ -3,9 +3,10 @@
 use std::iter;
 
 use crate::integrator::collocation::error::of_rounding;
-use crate::integrator::collocation::part::Whole;
+use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING, LOOKED};
+use crate::integrator::events::cubic::Cubic;
 use crate::link::CONTACT;
 use crate::math::nodal::{Nodal, end, greatest};
 use crate::math::prediction::{value_and_slope, value_at};
@@ -66,23 +67,19 @@ impl<const S: usize> Whole<'_, S> {
         for ((link, at), nodes) in model.links.iter().zip(&state.links).zip(&trial.links) {
             let Some(law) = link.contact().filter(|_| at.closed) else { continue };
             let through = |start: f64, values: &Nodal<S>| collocation.through(model.simd, start, values);
+            let force = through(at.force - link.force, &nodes.forces);
+            let (approach, rate) = (through(at.approach, &nodes.approaches), through(at.rate, &nodes.rates));
+            let rates = || iter::once((0.0, at.rate)).chain(collocation.places.iter().copied().zip(nodes.rates));
+            let missed = |(at, rate): (f64, f64)| {
+                let rate = rate * length - value_and_slope(&approach, at - 1.0).1;
+                Instant { at, d: 0.0, rate }
+            };
             for (x, _) in turns(at.force - link.force, &collocation.places, &nodes.forces) {
-                let approach = through(at.approach, &nodes.approaches);
-                let wrong = |(x, rate): (f64, f64)| rate * length - value_and_slope(&approach, x - 1.0).1;
-                let (mut before, mut after) = ((0.0, at.rate), (0.0, at.rate));
-                for node in collocation.places.iter().copied().zip(nodes.rates) {
-                    (before, after) = (after, node);
-                    if node.0 > x {
-                        break;
-                    }
-                }
-                let span = after.0 - before.0;
-                let part = (x - before.0) / span;
-                let tangents = (1.0 - part) * wrong(before) - part * wrong(after);
-                let d = value_at(&approach, x - 1.0) + span * part * (1.0 - part) * tangents;
-                let rate = value_at(&through(at.rate, &nodes.rates), x - 1.0);
-                let force = value_at(&through(at.force - link.force, &nodes.forces), x - 1.0);
-                most = most.max((link.force + force - law.closed_branch(link.approach + d, rate).force).abs());
+                let around = rates().zip(rates().skip(1)).find(|(_, (place, _))| *place >= x);
+                let Some((before, after)) = around else { continue };
+                let d = value_at(&approach, x - 1.0) + Cubic { a: missed(before), b: missed(after) }.at(x).d;
+                let lawful = law.closed_branch(link.approach + d, value_at(&rate, x - 1.0)).force;
+                most = most.max((link.force + value_at(&force, x - 1.0) - lawful).abs());
             }
         }
         most

@@ -270,7 +270,11 @@ def test_errors_in_a_relay_file_have_their_line(tmp_path: Path, text: str, messa
     ("old", "new", "message"),
     [
         ("[[shock]]", "[[shok]]", "20: shok: no such entry, .*did you mean shock"),
-        ("opening = 10e-6", "opening = 10", "5: contacts.opening = 10: not allowed, .* less than or equal to 0.1"),
+        (
+            "opening = 10e-6",
+            "opening = 10",
+            "5: contacts.opening = 10: not allowed, allowed is less than or equal to 0.1",
+        ),
         ("opening = 10e-6", "opening = 7e-3", "23: shock.1.duration = 0.006: not allowed, .*longest opening"),
         ("acceleration = 50.98581", "acceleration = '100 g'", '22: shock.1.acceleration = "100 g": not allowed'),
         ("rms = 2.83", "rms = 27.8", "15: random.1.rms = 27.8: not allowed, the density has 2.8.. g rms"),
@@ -294,7 +298,10 @@ def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
     # The published preload of 0.152 N by the power law: 7.4118e-3 Ohm / 0.152^0.9515 = 44 mOhm.
     for monitor, message in (
         ("voltage = 1e-3\ncurrent = 0.1\n", r"0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest"),
-        ("voltage = 10.0\ncurrent = 1e-8\n", "1e.09 Ohm on: not allowed, the contact has 1e.09 Ohm while it is open"),
+        (
+            "voltage = 10.0\ncurrent = 1e-8\n",
+            r"1e\+09 Ohm on: not allowed, the contact has 1e\+09 Ohm while it is open",
+        ),
     ):
         relay.write_text(f"[monitor]\n{monitor}")
         with pytest.raises(RelayContactError, match=rf"position 1: a monitor of .* from {message}"):
@@ -343,7 +350,10 @@ SCENE = 'title = "own"\nstop = 1e-3\ncommunicationStep = 1e-5\noutputs = ["conta
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        (f"{SCENE}[inputs]\nsupport.displacement = 0.0\nfile = 'moved/in.csv'\n", "6: inputs.support.displacement = 0"),
+        (
+            SCENE + "[inputs]\nsupport.displacement = 0.0\nfile = 'moved/in.csv'\n",
+            "6: inputs.support.displacement = 0.0",
+        ),
         (SCENE + "[inputs]\nfile = 3\n", "6: inputs.file = 3: not allowed"),
         (SCENE + "[inputs]\ntip.mass = 1e-5\n", "6: tip.mass: not an input"),
         (SCENE + "[parameters]\nbase.acceleration = 9.0\n", "6: base.acceleration: not a parameter"),
@@ -462,7 +472,10 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
         (["--stop", "1 ms"], "argument --stop: 1 ms: not allowed, allowed is a finite number"),
         (["--set", "solver.modes=inf"], "relay-contact: solver.modes = inf: not allowed, allowed is a whole number"),
         (["--set", "solver.modes=3000000000"], "relay-contact: solver.modes = 3000000000.0: not allowed"),
-        (["--set", "tip.mass=0", "--set", "tip_mass=0"], "relay-contact: --set tip_mass=0: tip.mass is given twice"),
+        (
+            ["--set", "tip.mass=0", "--set", "tip_mass=1e-5"],
+            "relay-contact: --set tip_mass=1e-5: tip.mass is given twice",
+        ),
         (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
     ],
 )

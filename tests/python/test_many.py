@@ -63,7 +63,7 @@ def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("stop = -1\n")
     bad: dict[Any, tuple[Case, str]] = {
-        1: ("chatter-41", r"chatter-41: no such file, and no scene of this name; there are armature-shock, at-rest"),
+        1: (("chatter-41", {}), r"chatter-41: no such file, and no scene"),
         2: ((CHATTER, {"excitation.frequenzy": 1.0}), r"did you mean excitation.frequency\?"),
         3: ((CHATTER, {"beam.length": -1.0}), r"^beam.length = -1 m: not allowed, allowed is"),
         # Found as it is initialised, and as it steps.
@@ -71,14 +71,21 @@ def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
         6: (("closing-bounce", {"solver.tolerance": "small"}), r"solver.tolerance = \"small\": not allowed"),
         7: ((wrong, {}), r"wrong.toml:1: communicationStep: missing"),
         8: (Scene("endless", 1e30, 1e30, ["contact.force"], {"effects.excitation": "Sine"}, {}), r"spacing of time"),
-        9: (Scene("table", 1e-3, 1e-5, ["contact.force"], {}, {"base.acceleration": np.zeros(1)}), '"time" is missing'),
+        9: ((CHATTER, {"beam.length": 0.015, "beam_length": 0.016}), r"^beam.length: given twice"),
     }  # fmt: skip
-    cases = [bad[n][0] if n in bad else (CHATTER, {}) for n in range(11)]
+    tables: list[tuple[dict[str, Any], str]] = [
+        ({"time": [0.0, 1.0], "base.acceleration": [0.0]}, r"base.acceleration: .* as many as times"),
+        ({"base.acceleration": [0.0]}, r'"time" is missing'),
+        ({"time": [0.0, 2.0, 1.0], "base.acceleration": 3 * [0.0]}, r"times have to rise"),
+    ]
+    for place, (given, message) in enumerate(tables, 10):
+        bad[place] = Scene("in Python", 1e-3, 1e-5, ["contact.force"], {}, given), message
+    cases = [bad[n][0] if n in bad else (CHATTER, {}) for n in range(14)]
     alone = run(CHATTER, component=COMPONENT)["contact.resistance"][-1]
     for workers in (1, 3):
         told: list[int] = []
         table = run_many(cases, workers=workers, component=COMPONENT, progress=told.append)
-        assert told[-1] == len(told) == 11
+        assert told[-1] == len(told) == 14
         for n, row in table.iterrows():
             if n in bad:
                 assert pytest.approx(np.nan, nan_ok=True) == row["contact.resistance"]

@@ -14,9 +14,19 @@ import pytest
 from fmpy import simulate_fmu
 
 from component import COMPONENT, FMU, ROOT
-from relay_contact import RelayContactError, RelayContactWarning, Values, qualification, read_table, run
+from relay_contact import (
+    Component,
+    Contact,
+    RelayContactError,
+    RelayContactWarning,
+    Scene,
+    Values,
+    qualification,
+    read_table,
+    run,
+)
 from relay_contact.command import main
-from relay_contact.component import Component, Contact, sine
+from relay_contact.component import sine
 
 
 def test_a_run_has_names_and_units() -> None:
@@ -49,6 +59,13 @@ def test_an_input_course_is_linear_between_its_points() -> None:
     driven = run("paper-1khz", inputs=course, component=COMPONENT, stop=2e-3, **changes)["contact.force"]
     # Chords lie (omega step)^2 / 8 below the sine at most; values held over a step would be wrong by omega step / 2.
     assert np.abs(driven - exact).max() / (np.ptp(exact) / 2) < (2 * np.pi * 1e-2) ** 2 / 8
+
+
+def test_an_unknown_scene_is_answered_with_those_there_are() -> None:
+    with pytest.raises(
+        RelayContactError, match="no scene of this name; there are armature-shock, at-rest, changeover-make"
+    ):
+        Scene.read("paper")
 
 
 def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:

@@ -4,9 +4,9 @@ use crate::integrator::collocation::part::Instant;
 
 /// The cubic through two samples, the earlier first.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cubic {
-    pub(super) a: Instant,
-    pub(super) b: Instant,
+pub(crate) struct Cubic {
+    pub(crate) a: Instant,
+    pub(crate) b: Instant,
 }
 
 impl Cubic {
@@ -16,7 +16,7 @@ impl Cubic {
     }
 
     /// Displacement (m) and velocity (m/s) at an instant (s).
-    pub(super) fn at(&self, at: f64) -> Instant {
+    pub(crate) fn at(&self, at: f64) -> Instant {
         let Self { a, b } = self;
         let h = self.length();
         let x = (at - a.at) / h;

@@ -3,7 +3,7 @@
 //! it goes on.
 
 pub mod closing;
-mod cubic;
+pub mod cubic;
 pub mod interruption;
 pub mod log;
 pub mod opening;
