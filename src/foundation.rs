@@ -87,6 +87,7 @@ impl Model {
                 links: Vec::new(),
                 roles: Roles::default(),
                 participations: [0.0; MAX_MODES],
+                roots: Vec::new(),
                 slowest: Slowest::default(),
                 resolution,
                 inertia: inertia(&modes),

@@ -1,5 +1,6 @@
 //! The model: everything computed once from a scene.
 
+use std::array;
 use std::ops::Range;
 
 use crate::armature::Armature;
@@ -17,7 +18,8 @@ use crate::force_error::Slowest;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
 use crate::link::{CONTACT, Link, LinkLaw, MAX_LINKS, Port};
-use crate::math::simd::Simd;
+use crate::math::free_motion::Roots;
+use crate::math::simd::{LANES, Simd};
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
 use crate::scene::spring::{Shape, SpringFile};
@@ -50,6 +52,8 @@ pub struct Model {
     pub(crate) roles: Roles,
     /// Load on each mode per base acceleration, with opposite sign.
     pub(crate) participations: Modal,
+    /// The modes as oscillators; a last group that is not full has its first mode once more.
+    pub(crate) roots: Vec<Roots<LANES>>,
     /// The static equilibrium, the reference of the motion.
     pub preload: Preload,
     /// The modes of all springs and of the armature, frequency ascending.
@@ -95,6 +99,11 @@ impl Model {
         for (participation, mode) in self.participations.iter_mut().zip(&self.modes) {
             *participation = mode.participation;
         }
+        let roots = |group: &[Mode]| {
+            let of = |value: fn(&Mode) -> f64| array::from_fn(|i| group.get(i).or(group.first()).map_or(0.0, value));
+            Roots::of(of(|mode| mode.omega_squared), of(|mode| mode.damping))
+        };
+        self.roots = self.modes.chunks(LANES).map(roots).collect();
         let Assembly { ports, links, roles } =
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
         self.slowest = Slowest::of(&self.modes, &ports);

@@ -24,9 +24,13 @@ pub struct FreeMotion<T = f64> {
 /// Exponent from which on what decays counts as zero: far below rounding, and slow to compute with once it is not normal.
 pub const FADED: f64 = -50.0;
 
-/// The characteristic roots of several oscillators.
+/// Several oscillators and their characteristic roots.
 #[derive(Clone, Copy, Debug)]
 pub struct Roots<const N: usize> {
+    /// Squares of the natural frequencies, 1/s2.
+    pub omega_squared: [f64; N],
+    /// Their damping c, 1/s.
+    pub damping: [f64; N],
     /// Whether they are real.
     pub creeps: [bool; N],
     /// Half their distance in the complex plane, 1/s.
@@ -41,7 +45,7 @@ impl<const N: usize> Roots<N> {
     /// For `omega_squared` >= 0 (1/s2) and `damping` c >= 0 (1/s).
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
-    pub fn of(omega_squared: &[f64; N], damping: &[f64; N]) -> Self {
+    pub fn of(omega_squared: [f64; N], damping: [f64; N]) -> Self {
         let (mut creeps, mut split, mut slow, mut fast) = ([false; N], [0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             let half = 0.5 * damping[i];
@@ -53,13 +57,11 @@ impl<const N: usize> Roots<N> {
             // Their product is omega^2.
             slow[i] = if fast[i] > 0.0 { omega_squared[i] / fast[i] } else { 0.0 };
         }
-        Self { creeps, split, slow, fast }
+        Self { omega_squared, damping, creeps, split, slow, fast }
     }
 }
 
 impl FreeMotion {
-    const AT_ONCE: Self = Self { q_from_q: 1.0, q_from_v: 0.0, v_from_q: 0.0, v_from_v: 1.0 };
-
     /// After the time `t` > 0 (s), for `omega_squared` >= 0 (1/s2) and `damping` c >= 0 (1/s).
     pub fn new(omega_squared: f64, damping: f64, t: f64) -> Self {
         let half = damping / 2.0;
@@ -86,20 +88,15 @@ impl FreeMotion {
     /// Of several oscillators with these roots, each after its time, side by side.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "there is a value for each")]
-    pub fn side_by_side<const N: usize, A: Arithmetic>(
-        omega_squared: &[f64; N],
-        damping: &[f64; N],
-        roots: &Roots<N>,
-        times: &[f64; N],
-    ) -> [Self; N] {
-        let Roots { creeps, split, slow, fast } = roots;
+    pub fn side_by_side<const N: usize, A: Arithmetic>(roots: &Roots<N>, times: &[f64; N]) -> FreeMotion<[f64; N]> {
+        let Roots { omega_squared, damping, creeps, split, slow, fast } = roots;
         // Where the difference of exponentials needs care, or the quotient of sine and angle.
         let is_easy = |i: usize| {
             let angle = split[i] * times[i];
             if creeps[i] { angle > 0.25 } else { angle > 0.0 && angle < LARGEST_ANGLE }
         };
         if !(0..N).all(is_easy) {
-            return array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i]));
+            return FreeMotion::of(&array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i])));
         }
         let (mut decays, mut faster, mut angles) = ([0.0; N], [0.0; N], [0.0; N]);
         let (mut of_v, mut of_q) = ([0.0; N], [0.0; N]);
@@ -128,21 +125,29 @@ impl FreeMotion {
                 cosine[i] = if creeps[i] { cosine[i] } else { decays[i] * cos[i] };
             }
         }
-        let mut motions = [Self::AT_ONCE; N];
+        let mut motion = FreeMotion { q_from_q: cosine, q_from_v: sine, v_from_q: [0.0; N], v_from_v: cosine };
         for i in 0..N {
-            let q_from_v = sine[i] / split[i];
-            motions[i] = Self {
-                q_from_q: cosine[i] + of_q[i] * q_from_v,
-                q_from_v,
-                v_from_q: -omega_squared[i] * q_from_v,
-                v_from_v: cosine[i] - of_v[i] * q_from_v,
-            };
+            motion.q_from_v[i] /= split[i];
+            motion.q_from_q[i] += of_q[i] * motion.q_from_v[i];
+            motion.v_from_q[i] = -omega_squared[i] * motion.q_from_v[i];
+            motion.v_from_v[i] -= of_v[i] * motion.q_from_v[i];
         }
-        motions
+        motion
     }
 }
 
 impl<const N: usize> FreeMotion<[f64; N]> {
+    /// Of these.
+    fn of(motions: &[FreeMotion; N]) -> Self {
+        let of = |value: fn(&FreeMotion) -> f64| motions.each_ref().map(value);
+        Self {
+            q_from_q: of(|motion| motion.q_from_q),
+            q_from_v: of(|motion| motion.q_from_v),
+            v_from_q: of(|motion| motion.v_from_q),
+            v_from_v: of(|motion| motion.v_from_v),
+        }
+    }
+
     /// That of one of them.
     pub fn get(&self, n: usize) -> Option<FreeMotion> {
         let Self { q_from_q, q_from_v, v_from_q, v_from_v } = self;
@@ -188,9 +193,9 @@ mod tests {
                     let omega = [1.0, 1.7];
                     let squares = omega.map(|omega| omega * omega);
                     let damping = [2.0 * first, 3.4 * second];
-                    let roots = Roots::of(&squares, &damping);
-                    let together = FreeMotion::side_by_side::<2, Separate>(&squares, &damping, &roots, &[t; 2]);
-                    for (one, (omega, damping)) in together.iter().zip(omega.into_iter().zip(damping)) {
+                    let together = FreeMotion::side_by_side::<2, Separate>(&Roots::of(squares, damping), &[t; 2]);
+                    for (n, (omega, damping)) in omega.into_iter().zip(damping).enumerate() {
+                        let one = together.get(n).unwrap();
                         let alone = FreeMotion::new(omega * omega, damping, t);
                         let wrong = [
                             one.q_from_q - alone.q_from_q,

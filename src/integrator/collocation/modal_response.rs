@@ -67,7 +67,7 @@ pub struct ModeOverStep {
 impl ModeOverStep {
     /// For `omega_squared` >= 0 (1/s2), `damping` c >= 0 (1/s), and the step length `h` > 0 (s).
     pub fn new(omega_squared: f64, damping: f64, h: f64) -> Self {
-        let Roots { slow: [slow], fast: [fast], .. } = Roots::of(&[omega_squared], &[damping]);
+        let Roots { slow: [slow], fast: [fast], .. } = Roots::of([omega_squared], [damping]);
         Self { omega_squared, damping, h, fast: fast * h, regime: Regime::of(slow * h, fast * h) }
     }
 
@@ -233,12 +233,9 @@ impl ModeOverStep {
                 }
             }
             _ => {
-                let (omega_squared, damping) = ([self.omega_squared; S], [self.damping; S]);
-                let (roots, times) = (Roots::of(&omega_squared, &damping), scaled(nodes, self.h));
-                let motions = FreeMotion::side_by_side::<S, A>(&omega_squared, &damping, &roots, &times);
-                for ((q, v), free) in q.iter_mut().zip(&mut v).zip(&motions) {
-                    (*q, *v) = (free.q_from_v / self.h, free.v_from_v);
-                }
+                let roots = Roots::of([self.omega_squared; S], [self.damping; S]);
+                let free = FreeMotion::side_by_side::<S, A>(&roots, &scaled(nodes, self.h));
+                (q, v) = (free.q_from_v.map(|q| q / self.h), free.v_from_v);
             }
         }
         Pair { q, v }

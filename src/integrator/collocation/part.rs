@@ -4,8 +4,8 @@
 use crate::beam::mode::{Modal, ModeStates, lanes};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::shapes::{Load, Shapes};
-use crate::integrator::collocation::side_by_side::Loads;
+use crate::integrator::collocation::shapes::{Loads, Shapes};
+use crate::integrator::collocation::side_by_side::Loaded;
 use crate::integrator::collocation::trial::{LinkEnd, Trial};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
@@ -45,37 +45,38 @@ pub(crate) struct Whole<'a, const S: usize> {
 impl<const S: usize> Whole<'_, S> {
     /// The modes `at` seconds after the start.
     pub(crate) fn modes(&self, at: f64, ends: &mut ModeStates) {
-        if self.model.ports.len() == 1 && self.model.axial.is_none() {
-            compiled_for!(self.model.simd, A => self.compute::<2, A>(at, ends));
-        } else {
-            compiled_for!(self.model.simd, A => self.compute::<MOST_LOADS, A>(at, ends));
+        let Self { model, state, .. } = *self;
+        let flies = !state.is_closed()
+            && model.links.iter().all(|link| link.contact().is_some())
+            && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0);
+        match (model.ports.len(), model.axial.is_none()) {
+            (1, true) if flies => compiled_for!(model.simd, A => self.compute::<1, A>(at, flies, ends)),
+            (1, true) => compiled_for!(model.simd, A => self.compute::<2, A>(at, flies, ends)),
+            _ => compiled_for!(model.simd, A => self.compute::<MOST_LOADS, A>(at, flies, ends)),
         }
     }
 
-    /// Where no force changes, it is about the equilibrium under the forces as they are: there are fewer loads then.
+    /// Where no force changes, as all contacts fly, it is about the equilibrium under the forces as they are: there are fewer loads then.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "ports of the model, and loads in use")]
-    fn compute<const LOADS: usize, A: Arithmetic>(&self, at: f64, ends: &mut ModeStates) {
+    fn compute<const LOADS: usize, A: Arithmetic>(&self, at: f64, flies: bool, ends: &mut ModeStates) {
         let Self { model, state, collocation, trial, .. } = *self;
         let shapes = &collocation.shapes;
         let mut rows = [[0.0; S]; S];
         for (row, node) in rows.iter_mut().zip(&collocation.nodes) {
             *row = collocation.lagrange(node * (at / self.length));
         }
-        let flies = !state.is_closed()
-            && model.links.iter().all(|link| link.contact().is_some())
-            && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0);
         let mut at_ports = [[0.0; S]; MAX_PORTS];
         for (link, nodes) in model.links.iter().zip(&trial.links) {
             add::<S, A>(&mut at_ports[link.port], link.sense, &nodes.forces);
         }
-        let mut polynomials = [Load::ZERO; LOADS];
-        let mut parts = [[0.0; LANES]; LOADS];
-        polynomials[0] = load_on::<S, A>(shapes, &rows, &scaled(&trial.accelerations, -1.0));
+        let (mut loads, mut parts) = (Loads::ZERO, [[0.0; LANES]; LOADS]);
+        let part = (shapes, &rows);
+        set::<S, LOADS, A>(part, &mut loads, 0, &scaled(&trial.accelerations, -1.0));
         let mut count = 1;
         if !flies {
             for forces in at_ports.iter().take(model.ports.len()) {
-                polynomials[count] = load_on::<S, A>(shapes, &rows, forces);
+                set::<S, LOADS, A>(part, &mut loads, count, forces);
                 count += 1;
             }
         }
@@ -88,19 +89,16 @@ impl<const S: usize> Whole<'_, S> {
         }
         let starts = state.modes.as_chunks::<LANES>().0.iter();
         let ends = ends.as_chunks_mut::<LANES>().0.iter_mut();
-        for (group, (modes, (starts, ends))) in model.modes.chunks(LANES).zip(starts.zip(ends)).enumerate() {
+        for (group, (roots, (starts, ends))) in model.roots.iter().zip(starts.zip(ends)).enumerate() {
             let of_group = |values: &Modal| *lanes(values, group);
-            // A mode that does not move takes the place of those that there are not.
-            let mut of_lanes = [modes[0]; LANES];
-            of_lanes[..modes.len()].copy_from_slice(modes);
             parts[0] = of_group(&model.participations);
             let (mut starts, mut leans) = (*starts, [0.0; LANES]);
             if flies {
                 for (port, forces) in model.ports.iter().zip(&at_ports) {
                     add::<LANES, A>(&mut leans, forces[0], &of_group(&port.shape));
                 }
-                for ((lean, mode), at) in leans.iter_mut().zip(&of_lanes).zip(&mut starts) {
-                    *lean /= mode.omega_squared;
+                for ((lean, omega_squared), at) in leans.iter_mut().zip(&roots.omega_squared).zip(&mut starts) {
+                    *lean /= omega_squared;
                     at.q -= *lean;
                 }
             } else {
@@ -110,12 +108,11 @@ impl<const S: usize> Whole<'_, S> {
             }
             if model.axial.is_some() {
                 let own = self.axial.chunks(LANES).nth(group).unwrap_or_default();
-                for (i, polynomial) in polynomials[of_ports..count].iter_mut().enumerate() {
-                    *polynomial = load_on::<S, A>(shapes, &rows, own.get(i).unwrap_or(&[0.0; S]));
+                for i in 0..LANES {
+                    set::<S, LOADS, A>(part, &mut loads, of_ports + i, own.get(i).unwrap_or(&[0.0; S]));
                 }
             }
-            let loads = Loads { shapes, length: at, polynomials: &polynomials[..count], parts: &parts[..count] };
-            loads.moved::<A>(&of_lanes, &starts, ends);
+            Loaded { shapes, length: at, loads: &loads, parts: &parts, count }.moved::<A>(roots, &starts, ends);
             for (end, lean) in ends.iter_mut().zip(&leans) {
                 end.q += lean;
             }
@@ -139,15 +136,20 @@ impl<const S: usize> Whole<'_, S> {
     }
 }
 
-/// The load of these nodal values up to an instant, at which the Lagrange polynomials take the nodes to `rows`. Not a closure,
-/// which may not be inlined and would then be compiled for the generic processor.
+/// Sets one of the loads to that of nodal values up to an instant, at which the Lagrange polynomials take the nodes to `rows`. Not a
+/// closure, which may not be inlined and would then be compiled for the generic processor.
 #[inline(always)]
-fn load_on<const S: usize, A: Arithmetic>(shapes: &Shapes<S>, rows: &[Nodal<S>; S], values: &Nodal<S>) -> Load {
+fn set<const S: usize, const LOADS: usize, A: Arithmetic>(
+    (shapes, rows): (&Shapes<S>, &[Nodal<S>; S]),
+    loads: &mut Loads<LOADS>,
+    n: usize,
+    values: &Nodal<S>,
+) {
     let mut nodal = [0.0; S];
     for (value, row) in nodal.iter_mut().zip(rows) {
         *value = dot::<S, A>(row, values);
     }
-    shapes.load::<A>(&nodal)
+    shapes.set::<LOADS, A>(loads, n, &nodal);
 }
 
 /// Shortens a trial from `state` to a `part` of it, which ends with these links and modes.

@@ -76,18 +76,18 @@ pub struct Shapes<const S: usize> {
     pub start_derivatives: &'static [Row<S>],
 }
 
-/// Integrals and derivatives of one load, in units of the step length.
+/// Integrals and derivatives of several loads, in units of the step length.
 #[derive(Clone, Copy, Debug)]
-pub struct Load {
+pub struct Loads<const N: usize> {
     /// n-fold integrals from the start up to the end of the step, n = 1, 2, ...
-    pub integrals: [f64; TERMS],
+    pub integrals: [[f64; N]; TERMS],
     /// m-th derivatives at the start and at the end, m = 0, 1, ...
-    pub derivatives: [[f64; 2]; MAX_SHAPES],
+    pub derivatives: [[[f64; N]; 2]; MAX_SHAPES],
 }
 
-impl Load {
-    /// No load.
-    pub(super) const ZERO: Self = Self { integrals: [0.0; TERMS], derivatives: [[0.0; 2]; MAX_SHAPES] };
+impl<const N: usize> Loads<N> {
+    /// No loads.
+    pub(super) const ZERO: Self = Self { integrals: [[0.0; N]; TERMS], derivatives: [[[0.0; N]; 2]; MAX_SHAPES] };
 }
 
 impl<const S: usize> Table<S> {
@@ -129,17 +129,16 @@ impl<const S: usize> Table<S> {
 }
 
 impl<const S: usize> Shapes<S> {
-    /// The nodal polynomial through these values.
+    /// Sets one of the loads to the nodal polynomial through these values.
     #[inline(always)]
-    pub fn load<A: Arithmetic>(&self, values: &Nodal<S>) -> Load {
-        let mut load = Load::ZERO;
-        for (integral, row) in load.integrals.iter_mut().zip(&self.end_integrals) {
-            *integral = dot::<S, A>(row, values);
+    #[expect(clippy::indexing_slicing, reason = "a load that there is")]
+    pub fn set<const N: usize, A: Arithmetic>(&self, loads: &mut Loads<N>, n: usize, values: &Nodal<S>) {
+        for (integral, row) in loads.integrals.iter_mut().zip(&self.end_integrals) {
+            integral[n] = dot::<S, A>(row, values);
         }
         let rows = self.start_derivatives.iter().zip(self.end_derivatives);
-        for (derivative, (start, end)) in load.derivatives.iter_mut().zip(rows) {
-            *derivative = [dot::<S, A>(&start.nodal, values), dot::<S, A>(end, values)];
+        for ([at_start, at_end], (start, end)) in loads.derivatives.iter_mut().zip(rows) {
+            (at_start[n], at_end[n]) = (dot::<S, A>(&start.nodal, values), dot::<S, A>(end, values));
         }
-        load
     }
 }

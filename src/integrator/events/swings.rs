@@ -40,7 +40,7 @@ impl Swing {
     /// that decays half as fast.
     fn new(mode: &Mode, x: f64, v: f64) -> Self {
         let Roots { creeps: [creeps], slow: [slow], fast: [fast], .. } =
-            Roots::of(&[mode.omega_squared], &[mode.damping]);
+            Roots::of([mode.omega_squared], [mode.damping]);
         if !creeps && 0.5 * mode.damping < fast {
             let v = v / fast;
             return Self { omega: fast, amplitude: (x * x + v * v).sqrt(), decay: 0.0 };
@@ -109,7 +109,7 @@ mod tests {
         let omega = 1e9_f64;
         for ratio in [0.01, 0.9, 1.0 - f64::EPSILON, 1.0, 1.0 + f64::EPSILON, 1.001, 1.06, 1.07, 3.0, 1e4] {
             let mode = Mode { omega_squared: omega * omega, damping: 2.0 * ratio * omega, ..Mode::default() };
-            let [slow] = Roots::of(&[mode.omega_squared], &[mode.damping]).slow;
+            let [slow] = Roots::of([mode.omega_squared], [mode.damping]).slow;
             for (x, v) in [(1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-0.3, 0.4)] {
                 let v = v * omega;
                 let Swing { omega: fastest, amplitude, decay } = Swing::new(&mode, x, v);
