@@ -10,7 +10,7 @@ use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
 use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
-use crate::integrator::constants::{FORCE_ROUNDING, MANY_STEPS, UNREST};
+use crate::integrator::constants::{FORCE_ROUNDING, MANY_STEPS, STEP_GROWTH, UNREST};
 use crate::integrator::dense_output::{DenseLink, DenseOutput};
 use crate::integrator::grid::round_down;
 use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
@@ -144,7 +144,8 @@ pub(crate) fn step_ahead(
             *contact = DenseLink { force, approach: indentation, rate, ..DenseLink::default() };
             state.time = time;
             state.force_error.add(ratio * allowed, model.force_scale);
-            state.lengths.long = StepOutcome::accepted(length, requested, growth::<LONG>(ratio)).length;
+            let growth = (growth::<LONG>(ratio), STEP_GROWTH);
+            state.lengths.long = StepOutcome::accepted(length, requested, growth).length;
             return true;
         }
         requested = length * shrinkage::<LONG>(ratio);

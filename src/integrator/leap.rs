@@ -3,7 +3,7 @@
 use crate::error::StepError;
 use crate::integrator::collocation::polynomial::{LONG_BY_ROOT, LONG_BY_TIME};
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::{LONGER, MISSED_ROOT, WORTH};
+use crate::integrator::constants::{LONGER, MISSED_ROOT, STEP_GROWTH, WORTH};
 use crate::integrator::grid::{Target, round_down};
 use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
 use crate::integrator::stepper::Stepper;
@@ -77,7 +77,7 @@ impl Stepper<'_> {
         // Nor does a short step reach as far as a long one.
         let short = self.smooth() / WORTH;
         let lengths = &mut self.state.lengths;
-        lengths.leap = StepOutcome::accepted(length, lengths.leap, growth::<LONG>(ratio)).length;
+        lengths.leap = StepOutcome::accepted(length, lengths.leap, (growth::<LONG>(ratio), STEP_GROWTH)).length;
         lengths.short = short;
         Ok(())
     }

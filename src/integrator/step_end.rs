@@ -108,9 +108,8 @@ impl Stepper<'_> {
             return Err(Shorter { error: trial.inner_error.total, allowed: model.tolerance.step, before_event: false });
         }
         let mut first = closes;
-        for (index, latest) in suspects.iter().enumerate() {
-            let cut = latest.and_then(|latest| locator.opening(index, latest));
-            first = earlier(first, cut);
+        for (index, latest) in suspects.into_iter().enumerate().filter_map(|(index, latest)| Some((index, latest?))) {
+            first = earlier(first, locator.opening(index, latest));
         }
         if let Some(change) = change.filter(|change| first.is_none_or(|first| change.at < first.at)) {
             first = Some(locator.cut_at_change(&change));
@@ -122,13 +121,13 @@ impl Stepper<'_> {
         })
     }
 
-    /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with the growth factor `growth`.
+    /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with this growth and the most there is.
     pub(super) fn end_at<const S: usize>(
         &mut self,
         cut: &Cut,
         trial: &mut Trial<S>,
         target: &Target,
-        growth: f64,
+        growth: (f64, f64),
         requested: f64,
     ) -> Result<StepOutcome, StepError>
     where

@@ -46,9 +46,10 @@ pub(crate) struct StepOutcome {
 }
 
 impl StepOutcome {
-    /// After an accepted step of `length` seconds where `requested` seconds were proposed.
-    pub(crate) fn accepted(length: f64, requested: f64, growth: f64) -> Self {
-        let next = growth.min(STEP_GROWTH) * length;
+    /// After an accepted step of `length` seconds where `requested` seconds were proposed. The growth is that which its error would have
+    /// allowed, and the most there is.
+    pub(crate) fn accepted(length: f64, requested: f64, (growth, most): (f64, f64)) -> Self {
+        let next = growth.min(most) * length;
         Self {
             accepted: true,
             switched: false,

@@ -128,17 +128,14 @@ impl Stepper<'_> {
         }
         // From the error of the whole step, also if an event shortens it.
         let own_growth = growth::<S>(ratio);
-        let growth = if self.progress.before_event {
-            own_growth.min(1.0)
-        } else {
-            own_growth * self.leaving_kink(target.length)
-        };
+        let (leaving, most) = self.leaving_kink(target.length);
+        let growth = if self.progress.before_event { own_growth.min(1.0) } else { own_growth * leaving };
         let cut = match self.find_end(trial, target) {
             Ok(cut) => cut,
             Err(rejected) => return Ok(rejected),
         };
         if let Some(cut) = cut {
-            return self.end_at(&cut, trial, target, growth, requested);
+            return self.end_at(&cut, trial, target, (growth, most), requested);
         }
         let is_first = self.changes_now();
         if !self.commit(trial, target, self.is_shortest(target))? {
@@ -156,21 +153,23 @@ impl Stepper<'_> {
             (lengths.long, lengths.flight, lengths.last) = (lengths.long.min(next), lengths.flight.min(next), 0.0);
             return Ok(StepOutcome { accepted: true, switched: false, growth: 1.0, length: requested.min(next) });
         }
-        Ok(StepOutcome::accepted(target.length, requested, growth))
+        Ok(StepOutcome::accepted(target.length, requested, (growth, most)))
     }
 
-    /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or
-    /// ended, alone: the force there is smooth in the logarithm of the time since.
-    fn leaving_kink(&self, length: f64) -> f64 {
-        let State { time, last_kink, .. } = *self.state;
+    /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or ended, alone:
+    /// with a damper the force there is smooth in the logarithm of the time since. Without one the spring rings on after slip. And the
+    /// most that it may grow: the first step after such a change is far shorter than those that follow.
+    fn leaving_kink(&self, length: f64) -> (f64, f64) {
+        let State { time, last_kink, kink_is_closing, slip, .. } = *self.state;
         let elapsed = time - last_kink;
-        let bends = self.state.kink_is_closing || self.state.slip.last_change == Some(last_kink);
-        if self.changes_now() {
-            STEP_GROWTH
-        } else if bends && elapsed > 0.0 {
-            (SAFETY * (1.0 + length / elapsed)).max(1.0)
+        let slides = self.model.law.damping() > 0.0 && slip.last_change == Some(last_kink);
+        let most = if slides { STEP_GROWTH * STEP_GROWTH } else { STEP_GROWTH };
+        if slides && elapsed == 0.0 {
+            (most, most)
+        } else if (slides || kink_is_closing) && elapsed > 0.0 {
+            ((SAFETY * (1.0 + length / elapsed)).max(1.0), most)
         } else {
-            1.0
+            (1.0, most)
         }
     }
 }

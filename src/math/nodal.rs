@@ -1,7 +1,7 @@
 //! Values at the nodes of a step and arithmetic on them, inlined into kernels compiled for the processor
 //! ([`crate::math::simd`]).
 
-use crate::math::simd::Arithmetic;
+use crate::math::simd::{Arithmetic, LANES};
 
 pub const SHORT: usize = 4;
 
@@ -63,7 +63,13 @@ pub fn end<const S: usize>(values: &Nodal<S>) -> f64 {
 /// The greatest magnitude.
 #[inline(always)]
 pub fn greatest<const S: usize>(values: &Nodal<S>) -> f64 {
-    values.iter().fold(0.0, |greatest, value| value.abs().max(greatest))
+    let mut greatest = [0.0_f64; LANES];
+    for values in values.chunks(LANES) {
+        for (greatest, value) in greatest.iter_mut().zip(values) {
+            *greatest = value.abs().max(*greatest);
+        }
+    }
+    greatest.into_iter().fold(0.0, f64::max)
 }
 
 /// Adds `factor` times the values.

@@ -19,7 +19,7 @@ use crate::integrator::collocation::coefficients::{Columns, NodalMotion, Respons
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
-use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING};
 use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, end, greatest, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
@@ -279,6 +279,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         factors: &'f mut Equations<S, L>,
     ) -> Option<Solution<'f, S, L>> {
         let (mut factorised, mut before) = (false, 0.0);
+        let sizes = free.each_ref().map(|free| (greatest(&free.d), greatest(&free.rate)));
         for iterations in 0..=ITERATIONS {
             let motions = self.under::<A>(free, &forces);
             let (mut residuals, laws) = self.residuals(&forces, &motions);
@@ -287,13 +288,14 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             let (mut wrong, mut rounding) = (0.0_f64, 0.0);
             for a in 0..in_use::<L>(self.unknowns.count) {
                 wrong = wrong.max(greatest(&residuals[a]));
-                rounding += greatest(&laws.stiffness[a]) * greatest(&free[a].d)
-                    + greatest(&laws.damping[a]) * greatest(&free[a].rate);
+                let (size, speed) = sizes[a];
+                rounding += greatest(&laws.stiffness[a]) * size + greatest(&laws.damping[a]) * speed;
             }
             if factorised && wrong <= newton.max(MOTION_ROUNDING * rounding) {
                 return Some(Solution { forces, motions, iterations, laws, factors });
             }
-            if L > 1 && factorised && wrong <= STALE * before {
+            // With the Jacobian before, a residual falls as it just has.
+            if factorised && wrong * wrong <= newton * before {
                 factors.solve::<A>(&mut residuals);
             } else {
                 self.equate::<A>(&laws, factors);
