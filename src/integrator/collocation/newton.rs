@@ -19,7 +19,7 @@ use crate::integrator::collocation::coefficients::{Columns, NodalMotion, Respons
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
-use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING};
+use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
 use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, end, greatest, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
@@ -295,7 +295,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                 return Some(Solution { forces, motions, iterations, laws, factors });
             }
             // With the Jacobian before, a residual falls as it just has.
-            if factorised && wrong * wrong <= newton * before {
+            if factorised && wrong * wrong <= STALE * newton * before {
                 factors.solve::<A>(&mut residuals);
             } else {
                 self.equate::<A>(&laws, factors);
