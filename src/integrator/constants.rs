@@ -106,9 +106,9 @@ pub const NEWTON: f64 = 0.2;
 /// Iterations before a step is judged too long. Most solutions need one or two. Cost.
 pub const ITERATIONS: u64 = 12;
 
-/// Residual that an iteration with the Jacobian of the one before is expected to leave, in residuals allowed, up to which it does without
-/// its own, 1: the forces are then as good as before. Cost.
-pub const STALE: f64 = 0.1;
+/// Largest ratio of a residual to the one before it with which the Jacobian of several unknowns still serves, 1. Where it may leave more
+/// of the residual, that is what limits the next steps. Cost.
+pub const STALE: f64 = 0.03;
 
 /// Pivot below which rows are exchanged, 1. An elimination multiplies rounding by its inverse. Pinned: 0,
 /// `a_small_pivot_costs_no_digits`.

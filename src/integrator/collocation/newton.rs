@@ -294,8 +294,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             if factorised && wrong <= newton.max(MOTION_ROUNDING * rounding) {
                 return Some(Solution { forces, motions, iterations, laws, factors });
             }
-            // With the Jacobian before, a residual falls as it just has.
-            if factorised && wrong * wrong <= STALE * newton * before {
+            if L > 1 && factorised && wrong <= STALE * before {
                 factors.solve::<A>(&mut residuals);
             } else {
                 self.equate::<A>(&laws, factors);
