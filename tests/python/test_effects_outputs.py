@@ -187,5 +187,7 @@ def test_without_an_effect_its_outputs_are_zero_and_the_motion_is_the_same(
         on, off = (run({**scene, f"effects.{effect}": each}, 3e-3, 1e-5, names) for each in (True, False))
         assert np.abs(on["contact.force"] - off["contact.force"]).max() <= allowed
         for name in outputs:
-            assert (on[name] != 0).any() or (effect == "chatter" and scene is PRESSED)
+            # A balance may be of either sign.
+            seen = np.abs(on[name]) if effect == "energy" else on[name]
+            assert (seen > 0).any() or (effect == "chatter" and scene is PRESSED)
             assert (off[name] == 0).all()
