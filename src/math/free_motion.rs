@@ -1,7 +1,5 @@
 //! The exact motion of a damped oscillator `q'' + c q' + omega^2 q = 0` from its initial state.
 
-use std::array;
-
 use bytemuck::Zeroable;
 
 use crate::math::elementary::{LARGEST_ANGLE, exp, sin_cos};
@@ -96,7 +94,11 @@ impl FreeMotion {
             if creeps[i] { angle > 0.25 } else { angle > 0.0 && angle < LARGEST_ANGLE }
         };
         if !(0..N).all(is_easy) {
-            return FreeMotion::of(&array::from_fn(|i| Self::new(omega_squared[i], damping[i], times[i])));
+            let mut motion = FreeMotion::zeroed();
+            for i in 0..N {
+                motion.set(i, &Self::new(omega_squared[i], damping[i], times[i]));
+            }
+            return motion;
         }
         let (mut decays, mut faster, mut angles) = ([0.0; N], [0.0; N], [0.0; N]);
         let (mut of_v, mut of_q) = ([0.0; N], [0.0; N]);
@@ -137,17 +139,6 @@ impl FreeMotion {
 }
 
 impl<const N: usize> FreeMotion<[f64; N]> {
-    /// Of these.
-    fn of(motions: &[FreeMotion; N]) -> Self {
-        let of = |value: fn(&FreeMotion) -> f64| motions.each_ref().map(value);
-        Self {
-            q_from_q: of(|motion| motion.q_from_q),
-            q_from_v: of(|motion| motion.q_from_v),
-            v_from_q: of(|motion| motion.v_from_q),
-            v_from_v: of(|motion| motion.v_from_v),
-        }
-    }
-
     /// That of one of them.
     pub fn get(&self, n: usize) -> Option<FreeMotion> {
         let Self { q_from_q, q_from_v, v_from_q, v_from_v } = self;
