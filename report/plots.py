@@ -7,8 +7,8 @@ import numpy as np
 from report import published as paper
 from report.bench import bench
 from report.figure import Curve, Figure
-from report.publication import DRAWN, Publication, base, deviations, resistance
-from report.published import BEST, FREQUENCIES, RATIOS
+from report.publication import DRAWN, Publication
+from report.published import BEST, FREQUENCIES
 from report.spring import LINEAR
 
 FREQUENCY, AMPLITUDE = "frequency / Hz", "amplitude of the contact force / cN"
@@ -24,8 +24,8 @@ def published(name: str, pairs: Iterable[tuple[float, float]], colour: int) -> l
 def figures(of: Publication) -> list[Figure]:
     """Return all figures."""
     return [
-        fig5(of), *fig6(of), fig7(of), fig8(of), fig9(of), fig19(of), fig11(), fig16(of),
-        table6(of), fig18(of), elastic_figure(of), literal_figure(of),
+        fig5(of), *fig6(of), fig7(of), fig8(of), fig9(of), fig19(of), fig11(), fig16(of), fig18(of),
+        elastic_figure(of), literal_figure(of),
     ]  # fmt: skip
 
 
@@ -78,8 +78,8 @@ def fig7(of: Publication) -> Figure:
 def fig8(of: Publication) -> Figure:
     """Draw displacement amplitude in excess of the base."""
     curves = [Curve(f"this model, ratio {DRAWN[0]:g}", of.frequencies, of.excess(), "line", 6)]
-    known = [(ratio, 1000.0, 100 * (1e-6 * value / base(1000.0) - 1))
-             for ratio, value in zip(RATIOS, paper.DISPLACEMENTS, strict=True)]  # fmt: skip
+    base = 1e6 * of.runs[BEST, 1000.0].base
+    known = [(ratio, 1000.0, 100 * (value / base - 1)) for ratio, value in paper.DISPLACEMENTS.items()]
     known += [(ratio, 1250.0, excess) for ratio, excess in paper.DISPLACEMENT_DEVIATIONS]
     for colour, ratio in enumerate(DRAWN):
         own = [(frequency, excess) for each, frequency, excess in known if each == ratio]
@@ -122,7 +122,7 @@ def fig11() -> Figure:
             found.append(bench().contact.real("contact.force", "contact.resistance"))
         forces, resistances = np.array(found).T
         curves.append(Curve(name, forces, 1e3 * resistances, style, len(curves)))  # type: ignore[arg-type]
-    own = [(at, resistance(at)) for at in (0.02, 0.05, 0.1, 0.152, 0.2, 0.5, 1.0)]
+    own = [(at, paper.resistance(at)) for at in (0.02, 0.05, 0.1, 0.152, 0.2, 0.5, 1.0)]
     curves += published("eq. 29, which the power law is", own, 0)
     title, y = "Contact resistance over contact force (Fig. 11)", "contact resistance / mΩ"
     return Figure("paper-fig11", title, "contact force / N", y, curves, log="xy")
@@ -139,20 +139,6 @@ def fig16(of: Publication) -> Figure:
     ]
     title = "Contact resistance at 1000 Hz, 98 m/s² (Fig. 16)"
     return Figure("paper-fig16", title, "time / ms", "contact resistance / mΩ", curves)
-
-
-def table6(of: Publication) -> Figure:
-    """Draw deviations of the resistance from the measured values at 1000 Hz."""
-    ratios = [each[0] for each in paper.RESISTANCE_DEVIATIONS]
-    found = np.abs([deviations(of.runs[ratio, 1000.0].least, of.runs[ratio, 1000.0].greatest) for ratio in ratios])
-    curves = [
-        Curve("this model, maximum", ratios, found[:, 1], "marked", 0),
-        Curve("this model, minimum", ratios, found[:, 0], "marked", 1),
-        *published("maximum", [(ratio, most) for ratio, _, most in paper.RESISTANCE_DEVIATIONS], 0),
-        *published("minimum", [(ratio, least) for ratio, least, _ in paper.RESISTANCE_DEVIATIONS], 1),
-    ]
-    title = "Deviation of the resistance from the measurement, time domain, 1000 Hz (Table 6)"
-    return Figure("paper-table6", title, "damping ratio", "magnitude of the deviation / %", curves)
 
 
 def fig18(of: Publication) -> Figure:

@@ -4,37 +4,16 @@ from functools import cached_property
 
 import numpy as np
 
-from relay_contact import Value, side_by_side
+from relay_contact import Array, Value, side_by_side
 from report import published as paper
-from report.bench import PRESTRESSED, Bench, bench, damped, specimen
+from report.bench import PRESTRESSED, Bench, bench, specimen
 from report.figure import Curve
-from report.published import ACCELERATION, BEST, FREQUENCIES, RATIOS
-from report.spring import Materials, Spring, elastic_reading
+from report.published import BEST, FREQUENCIES, RATIOS
+from report.spring import LINEAR, Materials, Spring, elastic_reading
 
 DRAWN = (5.0, 10.0, 20.0, 30.0)
 """Ratios that are drawn over frequency; with smaller ones the contact opens near the resonance."""
-
-
-def base(frequency: float) -> float:
-    """Return the amplitude of the base, m."""
-    return float(ACCELERATION / (2 * np.pi * frequency) ** 2)
-
-
-def resistance(force: float) -> float:
-    """Return the resistance at a force (N) by the published law, mOhm, as the component has it."""
-    return float(paper.RESISTANCE * force**-paper.EXPONENT)
-
-
-def force(resistance: float) -> float:
-    """Return the force (N) at which the published law has a resistance, mOhm."""
-    return float((paper.RESISTANCE / resistance) ** (1 / paper.EXPONENT))
-
-
-def deviations(least: float, greatest: float) -> tuple[float, float]:
-    """Return deviations (%) of least and greatest resistance from those measured, by the extremes of the force (N)."""
-    measured = paper.LEAST_RESISTANCE, paper.GREATEST_RESISTANCE
-    found = resistance(greatest), resistance(least)
-    return 100 * (found[0] / measured[0] - 1), 100 * (found[1] / measured[1] - 1)
+GRID: Array = np.array(FREQUENCIES)
 
 
 class Publication:
@@ -48,9 +27,7 @@ class Publication:
         grid = [(ratio, frequency) for ratio in RATIOS for frequency in FREQUENCIES]
         curves = [(ratio, frequency) for ratio in DRAWN for frequency in self.frequencies]
         keys = list(dict.fromkeys(grid + curves))
-        literal = damped(specimen(self.component), 1.0) | dict.fromkeys(
-            ("beam.stiffnessDamping", "contact.damping"), paper.BETAS[3]
-        )
+        literal = specimen(self.component) | dict.fromkeys(("beam.stiffnessDamping", "contact.damping"), paper.BETA)
         tasks = [(specimen(self.component, ratio), frequency) for ratio, frequency in keys]
         tasks += [(literal, frequency) for frequency in FREQUENCIES]
         runs = side_by_side(lambda task: Bench(self.component).vibrate(*task), tasks)
@@ -102,8 +79,57 @@ class Publication:
         """Return the deviation of the greatest resistance in the frequency domain, with mass damping (1/s), %."""
         amplitude = float(self.spring(alpha=alpha).force(1000.0)[0]) / 100
         rest = self.rest("preload.force")
-        return deviations(rest - amplitude, rest)[1]
+        return paper.deviations(rest - amplitude, rest)[1]
+
+    def deviations(self, ratio: float) -> tuple[float, float]:
+        """Return the deviations (%) of least and greatest resistance from those measured, at 1000 Hz."""
+        run = self.runs[ratio, 1000.0]
+        return paper.deviations(run.least, run.greatest)
+
+    def displacement(self, ratio: float) -> float:
+        """Return the displacement amplitude at 1000 Hz, base included, um."""
+        run = self.runs[ratio, 1000.0]
+        return float(1e6 * run.base * run.travel)
 
     def peak(self, ratio: float) -> tuple[float, float]:
         """Return the greatest force amplitude (cN) of a ratio in the grid, and its frequency."""
         return max((self.runs[ratio, frequency].amplitude, frequency) for frequency in FREQUENCIES)
+
+    def linear_peak(self, alpha: float) -> tuple[float, float]:
+        """Return the same in the frequency domain, with mass damping (1/s)."""
+        return greatest(self.spring(alpha=alpha).force(LINEAR), LINEAR)
+
+    def elastic(self, ratio: float) -> tuple[Spring, Spring]:
+        """Return the springs of a ratio whose elastic part is compared: with the start values, and refitted."""
+        return self.spring(ratio), self.refitted.of_ratio(ratio)
+
+    def elastic_peaks(self, ratio: float) -> list[tuple[float, float]]:
+        """Return the greatest amplitudes (cN) of the elastic part in the grid, and their frequencies."""
+        return [greatest(each.elastic(GRID), GRID) for each in self.elastic(ratio)]
+
+    def between_domains(self, ratio: float, alpha: float) -> list[float]:
+        """Return the largest relative deviations between frequency domain (1/s) and time domain over the grid.
+
+        Those of the force, of the force without contact damping, of its elastic part, and of this up to 1500 Hz.
+        """
+        linear, spring = self.spring(alpha=alpha).force(GRID), self.spring(ratio)
+        bench().contact.begin_anew(specimen(self.component, ratio) | {"contact.damping": 0.0})
+        bare = Spring.of(bench().contact)
+        whole = np.array([self.runs[ratio, frequency].amplitude for frequency in FREQUENCIES])
+        apart = [np.abs(linear / each - 1) for each in (whole, bare.force(GRID), spring.elastic(GRID))]
+        return [float(each.max()) for each in apart] + [float(apart[-1][GRID <= 1500].max())]
+
+    def misfits(self) -> list[float]:
+        """Return the misfits of Table 6: of the total force, of its elastic part, and of that refitted."""
+        rest, found = self.rest("preload.force"), np.zeros(3)
+        for ratio, *known in paper.RESISTANCE_DEVIATIONS:
+            amplitudes = [float(each.elastic(1000.0)[0]) / 100 for each in self.elastic(ratio)]
+            elastic = [paper.deviations(rest - each, rest + each) for each in amplitudes]
+            found += np.abs(np.abs([self.deviations(ratio), *elastic]) - known).sum(axis=1)
+        return [float(each) for each in found]
+
+
+def greatest(amplitudes: Array, frequencies: Array) -> tuple[float, float]:
+    """Return the greatest amplitude, and its frequency."""
+    at = int(amplitudes.argmax())
+    return float(amplitudes[at]), float(frequencies[at])

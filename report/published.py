@@ -11,10 +11,10 @@ FREQUENCIES = (250.0, 500.0, 750.0, 1000.0, 1250.0, 1500.0, 1750.0, 2000.0)
 """Of the grid, Hz (Table 3)."""
 RATIOS = (0.1, 1.0, 5.0, 10.0, 20.0, 30.0)
 """Damping ratios at 1000 Hz (Table 3)."""
-BETAS = (3.1831e-5, 3.1831e-4, 1.5916e-3, 3.1831e-3, 6.3662e-3, 9.5493e-3)
-"""Their stiffness coefficients as printed (Table 3)."""
 BEST = 10.0
 """The ratio whose results come closest to the measurements."""
+BETA = 3.1831e-3
+"""Its stiffness coefficient as printed (Table 3)."""
 
 LENGTH, OVERTRAVEL = 15.5e-3, 0.2e-3
 """Of the specimen, m (Table 2)."""
@@ -34,8 +34,8 @@ PEAKS = ((10.0, 1250.0, 5.2), (20.0, 750.0, 3.3), (30.0, 250.0, 3.1))
 """Of the force amplitude in the time domain: ratio, Hz, cN (section 3.2, Fig. 7)."""
 DISPLACEMENT_DEVIATIONS = ((10.0, 65.5), (30.0, 11.4))
 """Displacement amplitude over the excitation's, less 1, at 1250 Hz: ratio, % (section 3.2, Fig. 8)."""
-DISPLACEMENTS = (6.485, 4.547, 3.773, 3.115, 2.632, 2.524)
-"""Amplitudes at 1000 Hz, um, in the order of RATIOS (Table 4)."""
+DISPLACEMENTS = {0.1: 6.485, 1.0: 4.547, 5.0: 3.773, 10.0: 3.115, 20.0: 2.632, 30.0: 2.524}
+"""Amplitudes at 1000 Hz by ratio, um (Table 4)."""
 MEASURED_DISPLACEMENT = 2.9
 """At 1000 Hz, um (section 4.2, Fig. 14)."""
 
@@ -58,6 +58,22 @@ RESISTANCE_DEVIATIONS = ((10.0, 30.23, 1.89), (20.0, 41.63, 16.18), (30.0, 53.69
 """Of least and greatest resistance from the measured ones: ratio, %, % (Table 6)."""
 FREQUENCY_DOMAIN_DEVIATION = 1.21
 """Of the greatest resistance at 1000 Hz with a mass coefficient of 5125 1/s, % (section 4.2)."""
+
+
+def resistance(force: float) -> float:
+    """Return the resistance at a force (N) by eq. 29, mOhm, as the component has it."""
+    return float(RESISTANCE * force**-EXPONENT)
+
+
+def force(resistance: float) -> float:
+    """Return the force (N) at which eq. 29 has a resistance, mOhm."""
+    return float((RESISTANCE / resistance) ** (1 / EXPONENT))
+
+
+def deviations(least: float, greatest: float) -> tuple[float, float]:
+    """Return deviations (%) of least and greatest resistance from those measured, by the extremes of the force (N)."""
+    found = resistance(greatest), resistance(least)
+    return 100 * (found[0] / LEAST_RESISTANCE - 1), 100 * (found[1] / GREATEST_RESISTANCE - 1)
 
 
 @dataclass(frozen=True)

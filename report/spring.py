@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 from relay_contact import Contact
-from report.published import ACCELERATION, BEST, BETAS, FORCE, FORCE_AMPLITUDE, LENGTH, OVERTRAVEL, STIFFNESS
+from report.published import ACCELERATION, BEST, BETA, FORCE, FORCE_AMPLITUDE, LENGTH, OVERTRAVEL, STIFFNESS
 from report.published import WITH_PRESTRESS as FREQUENCY
 
 Complex = NDArray[np.complex128]
@@ -105,13 +105,18 @@ class Source:
     shown: str
     place: str
 
+    @property
+    def rounding(self) -> float:
+        """Half a unit of its last digit, relative."""
+        return 0.5 * self.digit / self.value
+
 
 SOURCES = (
     Source("static force F_0", FORCE, 1e-3, "0.152 N", "section 3.1"),
     Source("contact stiffness k_j", STIFFNESS, 1e4, "3.54e6 N/m", "section 3.1"),
     Source("first frequency f_1", FREQUENCY, 0.1, "1354.5 Hz", "section 3.1, Fig. 4"),
     Source("force amplitude at 1000 Hz", FORCE_AMPLITUDE, 1e-3, "4.812 cN", "section 3.2, Fig. 6"),
-    Source("stiffness coefficient beta", BETAS[3], 1e-7, "3.1831e-3 s", "Table 3"),
+    Source("stiffness coefficient beta", BETA, 1e-7, "3.1831e-3 s", "Table 3"),
 )
 
 

@@ -40,6 +40,11 @@ def two_digits(value: float) -> str:
     return short(value)
 
 
+def plain(value: float) -> str:
+    """Return a round number without zeros behind: 0.1, 10."""
+    return f"{value:g}"
+
+
 def short(value: float, digits: int = 0) -> str:
     """Return a number with an exponent that has no zeros in front: 1e-6."""
     mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
@@ -72,7 +77,7 @@ def rendered(name: str, figures: Iterable[Figure], values: dict[str, Any]) -> tu
     environment = Environment(
         loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, keep_trailing_newline=True, autoescape=False
     )
-    for each in (number, signed, percent, significant, two_digits, short):
+    for each in (number, plain, signed, percent, significant, two_digits, short):
         environment.filters[each.__name__] = each
     module = environment.get_template(name).make_module({"figure": figure, **values})
     return str(module), getattr(module, "leads", {})

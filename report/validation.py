@@ -1,4 +1,4 @@
-"""The text of docs/validation.md: its numbers, and the tables of what was fitted and identified."""
+"""The numbers of docs/validation.md, and its tables of what was fitted."""
 
 from typing import Any
 
@@ -10,68 +10,70 @@ from relay_contact import Scene
 from relay_contact.figures import significant
 from report import fit
 from report import published as paper
-from report import tables as tabulated
 from report.figure import Figure
-from report.publication import Publication, deviations, force, resistance
-from report.published import BEST, FORCE, FREQUENCIES, RATIOS
+from report.publication import GRID, Publication
+from report.published import FORCE, RATIOS
 from report.spring import PARAMETERS, RIVET, SOURCES, Specimen, identified, sensitivities
-from report.tables import Row
 from report.text import number, percent, rendered, signed, table
 
 CONTACTS = {"Hertz": "smooth spheres", "Rough": "rough contact", "support": "support that yields"}
-TABLES = (
-    tabulated.statics, tabulated.time_domain, tabulated.grid, tabulated.displacements, tabulated.frequency_domain,
-    tabulated.domains, tabulated.resistances, tabulated.peaks, tabulated.misfits,
-)  # fmt: skip
+
+
+def row(published: float, value: float, digits: int, unit: str = "") -> str:
+    """Return the cells of a published value: it, the component's, and the relative deviation."""
+    unit = f" {unit}" if unit else ""
+    return f"{published:g}{unit} | {number(value, digits)}{unit} | {percent(value / published)}"
+
+
+def difference(published: float, value: float, digits: int, unit: str) -> str:
+    """Return the same cells with the difference."""
+    return f"{published:g} {unit} | {number(value, digits)} {unit} | {signed(value - published, digits)} {unit}"
+
+
+def points(published: float, value: float) -> str:
+    """Return the same cells for percentages, with the difference of their magnitudes."""
+    return f"{published:g} % | {signed(value, 2)} % | {signed(abs(value) - abs(published), 2)} points"
 
 
 def page(of: Publication, figures: list[Figure]) -> tuple[str, dict[str, str]]:
     """Return docs/validation.md, and what its sections say in a sentence, by their titles."""
-    return rendered("validation.md", figures, values(of))
-
-
-def values(of: Publication) -> dict[str, Any]:
-    """Return what the text needs."""
-    found = {each.__name__: each(of) for each in TABLES}
-    return found | reproduced(of) | findings(of) | identification(of) | fitted_contacts()
+    shared = {"of": of, "paper": paper, "row": row, "difference": difference, "points": points}
+    found = reproduced(of) | findings(of) | identification(of) | fitted_contacts()
+    return rendered("validation.md", figures, shared | found)
 
 
 def reproduced(of: Publication) -> dict[str, Any]:
     """Return numbers of the sections on what is reproduced and what is not."""
-    run, spring = of.runs[BEST, 1000.0], of.spring()
+    spring = of.spring()
     ends = FORCE - paper.FORCE_AMPLITUDE / 100, FORCE + paper.FORCE_AMPLITUDE / 100
     measured = paper.LEAST_RESISTANCE, paper.GREATEST_RESISTANCE
     inverted = []
     for _, least, greatest in paper.RESISTANCE_DEVIATIONS:
-        high, low = force(measured[0] * (1 + 0.01 * least)), force(measured[1] * (1 - 0.01 * greatest))
+        high = paper.force(measured[0] * (1 + 0.01 * least))
+        low = paper.force(measured[1] * (1 - 0.01 * greatest))
         inverted.append(((high + low) / 2, 50 * (high - low)))
-    found = np.abs([deviations(of.runs[ratio, 1000.0].least, of.runs[ratio, 1000.0].greatest)
-                    for ratio, *_ in paper.RESISTANCE_DEVIATIONS])  # fmt: skip
+    found = np.abs([of.deviations(ratio) for ratio, *_ in paper.RESISTANCE_DEVIATIONS])
     weakly = of.spring(RATIOS[0])
     places = np.linspace(0, 1, 101)
     shape = [abs(weakly.deflection(of.rest("preload.frequency"), place)[0]) for place in places]
     rest = 100 * of.rest("preload.force")
-    linear = [100 * float(of.spring(ratio).force(np.array(FREQUENCIES)).max()) / rest for ratio in (0.1, 1.0, 5.0)]
     alphas, apart = of.by_alpha
     damping = float(of.component.start("beam.stiffnessDamping"))
     return {
-        "damping_per_ratio": 1e6 * damping / BEST,
+        "damping": damping,
         "most_excess": np.ceil(np.abs(of.excess()).max()),
-        "own_law": [resistance(end) / known for end, known in zip(ends, measured[::-1], strict=True)],
+        "own_law": [paper.resistance(end) / known for end, known in zip(ends, measured[::-1], strict=True)],
         "inverted": inverted,
-        "greatest": of.peak(BEST),
-        "resistance_range": [resistance(run.greatest), resistance(run.least)],
         "furthest": float(found[:, 1].max()), "nearest": float(found[:, 0].min()),
         "best_alpha": alphas[int(np.argmin(apart))],
         "shape": {"tip": shape[-1] / max(shape), "place": float(places[int(np.argmax(shape))])},
-        "shift": run.travel, "thickness": 1e3 * float(of.component.start("beam.thickness")),
-        "linear_peaks": linear,
+        "linear_peaks": [100 * float(of.spring(ratio).force(GRID).max()) / rest for ratio in (0.1, 1.0, 5.0)],
         "refitted": {
             "rivet": 1e6 * of.refitted.rivet, "damping": of.refitted.contact_damping / spring.contact_damping,
         },
         "scene_rivet": 1e6 * float(Scene.read("paper-elastic").values["tip.mass"]),
-        "indentation": 1e9 * of.rest("preload.indentation"),
         "first_damping": np.pi * of.rest("preload.frequency") * damping,
+        "misfits": of.misfits(),
     }  # fmt: skip
 
 
@@ -88,7 +90,7 @@ def findings(of: Publication) -> dict[str, Any]:
         return of.rest("preload.frequency", effects_axialForce="Prescribed", beam_axialForce=force) - wanted
 
     needed = brentq(excess, 0.0, 0.99 * spring.buckling)
-    beta, (_, alpha, _) = paper.BETAS[3], paper.EQUIVALENT[0]
+    beta, (_, alpha, _) = paper.BETA, paper.EQUIVALENT[0]
     return {
         "literal": [min(amplitudes), max(amplitudes)], "omega": paper.ALPHA_PER_BETA**0.5, "first": first,
         "tau": 2 * np.pi, "quotient": alpha / beta, "si_beta": f"{beta / (4 * np.pi**2):.3e}".replace("e-0", "e-"),
@@ -101,30 +103,17 @@ def findings(of: Publication) -> dict[str, Any]:
 
 
 def identification(of: Publication) -> dict[str, Any]:
-    """Return the tables of identified parameters."""
-    found = identified(of.materials)
+    """Return what was identified, and how it depends on what is published."""
+    found, elastic = (identified(of.materials, elastic=each).values for each in (False, True))
     slopes = sensitivities(of.materials, [1e-3] * len(SOURCES))
-    digits = [0.5 * source.digit / source.value for source in SOURCES]
-    rounding = sensitivities(of.materials, digits)
-    elastic = identified(of.materials, elastic=True)
+    rounding = sensitivities(of.materials, [source.rounding for source in SOURCES])
     with of.component.started() as contact:
-        starts = Specimen.of(contact)
-    rows = []
-    for (name, unit, by), value, own in zip(PARAMETERS, found.values, starts.values, strict=True):
-        texts = [f"{significant(each, 6)} {unit}" for each in (value, own)]
-        rows.append([name, by, *texts, percent(own / value)])
-    columns = ["parameter", "determined by", "identified", "start value", "difference"]
-    changes = []
-    for source, digit, slopes_ in zip(SOURCES, digits, slopes, strict=True):
-        cells = [percent(1 + 0.01 * slope) for slope in slopes_]
-        cells = ["" if cell == "0.00 %" else cell for cell in cells]
-        changes.append([f"{source.name}: {source.shown}, {source.place}", f"± {number(100 * digit, 3)} %", *cells])
-    symbols = [name.rpartition(" ")[2] for name, *_ in PARAMETERS]
+        starts = Specimen.of(contact).values
     return {
-        "identified": table(columns, rows),
-        "sensitivities": table(["published result", "half a unit of its last digit", *symbols], changes),
-        "found_width": float(found.values[3]), "slope": float(0.01 * slopes[2][RIVET]),
-        "precision": 100 * abs(float(rounding[0][RIVET])) * digits[0], "elastic_rivet": float(elastic.values[RIVET]),
+        "identified": zip(PARAMETERS, found, starts, strict=True),
+        "sensitivities": zip(SOURCES, slopes, strict=True),
+        "found_width": float(found[3]), "slope": float(0.01 * slopes[2][RIVET]),
+        "precision": 100 * abs(float(rounding[0][RIVET])) * SOURCES[0].rounding, "elastic_rivet": float(elastic[RIVET]),
     }  # fmt: skip
 
 
@@ -144,7 +133,7 @@ def fitted_contacts() -> dict[str, Any]:
         apart = f"{signed(value - known, 0)} °" if own.unit == "°" else percent(value / known, 1)
         return f"{significant(value)} {own.unit}".strip() + f", {apart}"
 
-    def compared(own: pd.DataFrame, *last: Row) -> str:
+    def compared(own: pd.DataFrame, *last: list[str]) -> str:
         rows = [
             [each.quantity, f"{each.published:.5g} {each.unit}".strip(),
              *(deviation(each, contact) for contact in CONTACTS), each.location]
@@ -178,7 +167,7 @@ def fitted_contacts() -> dict[str, Any]:
         "others": compared(others),
         "fits": table(["parameter", *CONTACTS.values()], lines),
         "softer_support": paper.STIFFNESS / parameter("support", "contact stiffness at 0.152 N"),
-        "table4": 100 * (paper.DISPLACEMENTS[0] / paper.DISPLACEMENTS[1] - 1),
+        "table4": 100 * (paper.DISPLACEMENTS[0.1] / paper.DISPLACEMENTS[1.0] - 1),
         "with_weakest": {contact: 100 * np.mean(np.log(with_weakest[contact] / with_weakest.published) ** 2) ** 0.5
                          for contact in CONTACTS},
         "softer": paper.STIFFNESS / stiffness,
