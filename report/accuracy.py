@@ -33,6 +33,12 @@ ERRORS = ("force_error", "event_error_us")
 """Columns of errors: of the force, and of instants."""
 USELESS = {True: 10.0, False: 1.0}
 """Larger errors are not drawn, us and relative to the preload: such a run is of no use."""
+Levels = dict[str, tuple[float, ...]]
+INSTANTS_WITHIN: Levels = dict.fromkeys(("chatter", "chatter 3 %", "closing bounce"), (1e-6, 1e-7, 1e-8, 1e-9))
+FORCE_WITHIN: Levels = {
+    "paper": (1e-2, 1e-4, 1e-6, 1e-10), "chatter": (1e-2, 1e-4, 1e-6, 1e-8), "chatter 3 %": (1e-2, 1e-4, 1e-6, 1e-8),
+}  # fmt: skip
+"""Errors by scene for which integrators are compared: of the instants, s, and of the force."""
 VERDICT = "From tolerances of"
 """Begin of the line among the tables that says down to which one the error stays below it."""
 OK = "ok"
@@ -93,22 +99,19 @@ def time(seconds: float) -> str:
     return f"{two_digits(seconds)} s" if seconds >= 1 else f"{two_digits(1e3 * seconds)} ms"
 
 
-def envelope(
-    measured: pd.DataFrame, scene: str, levels: tuple[float, ...], instants: bool, started: bool = False
-) -> str:
-    """Return a table: of each integrator the cheapest run whose error is at most each level (s, or relative).
+def cheapest(measured: pd.DataFrame, scenes: Levels, instants: bool, started: bool = False) -> str:
+    """Return a table of the cheapest run of each integrator whose error is at most a level (s, or relative).
 
     Its time is that of a simulated second, or of the whole run with its start.
     """
     column = "total_seconds" if started else "seconds_per_second"
-    own = compared(measured, scene)
-    own = own[own.events.notna()]
-    names = own.integrator.unique()
     scale, unit = (1e-6, " s") if instants else (1.0, "")
-    errors = scale * own[ERRORS[instants]]
-    lines = []
-    for level in levels:
-        cells, least = [f"{short(level)}{unit}"], 0.0
+    names, lines = compared(measured, "chatter").integrator.unique(), []
+    for scene, level in ((scene, level) for scene, levels in scenes.items() for level in levels):
+        own = compared(measured, scene)
+        own = own[own.events.notna()]
+        errors = scale * own[ERRORS[instants]]
+        cells, least = [f"*{scene}*", f"{short(level)}{unit}"], 0.0
         for name in names:
             good = own[(own.integrator == name) & (errors <= level)]
             if not len(good):
@@ -123,7 +126,7 @@ def envelope(
             else:
                 cells.append(f"**{two_digits(cost / least)}{TIMES}** {spent}, {run.modes} modes, {tolerance}")
         lines.append(cells)
-    return table(["allowed", *names], lines)
+    return table(["scene", "allowed", *names], lines)
 
 
 def delivered_table(measured: pd.DataFrame) -> str:
@@ -163,19 +166,12 @@ def write() -> Path:
     parts = timed.median_seconds_per_second / timed.seconds_per_second
     costs = timed[timed.part == "delivered"].set_index(["scene", "tolerance"]).seconds_per_second
     failed = measured[measured.outcome != OK]
-    fine, coarse = (1e-6, 1e-7, 1e-8, 1e-9), (1e-2, 1e-4, 1e-6, 1e-8)
     text, _ = rendered("accuracy.md", [], {
         "verdict": verdict(measured), "spread": parts.max() / parts.min() - 1, "delivered": delivered_table(measured),
         "growth": [costs[scene, 1e-10] / costs[scene, 1e-2] for scene in SCENES],
-        "tables": [
-            ("chatter", True, False, envelope(measured, "chatter", fine, True)),
-            ("chatter", True, True, envelope(measured, "chatter", fine, True, started=True)),
-            ("paper", False, False, envelope(measured, "paper", (1e-2, 1e-4, 1e-6, 1e-10), False)),
-            ("chatter 3 %", True, False, envelope(measured, "chatter 3 %", fine, True)),
-            ("chatter 3 %", False, False, envelope(measured, "chatter 3 %", coarse, False)),
-            ("chatter", False, False, envelope(measured, "chatter", coarse, False)),
-            ("closing bounce", True, False, envelope(measured, "closing bounce", fine, True)),
-        ],
+        "instants": cheapest(measured, INSTANTS_WITHIN, True),
+        "started": cheapest(measured, {"chatter": INSTANTS_WITHIN["chatter"]}, True, started=True),
+        "forces": cheapest(measured, FORCE_WITHIN, False),
         "machine": MEASURED.with_name("machine.txt").read_text(encoding="utf-8"),
         "failed": list(failed.scene + ", " + failed.integrator + ": " + failed.outcome),
     })  # fmt: skip

@@ -89,20 +89,19 @@ def write(page: Path = PAGE) -> Path:
         changes = [{}, *({**each.also, **each.setting, "outputs": each.reads} for each in found)]
         least, *counts = pool.map(minimal.per_millisecond, changes)
     costs = dict(zip((each.name for each in found), counts, strict=True))
-    rows = [["minimal scene", "", number(least, 0), ""]]
+    rows = [["minimal scene", "", number(least, 0), "", ""]]
     for each in found:
         added = 100 * (costs[each.name] / (costs[each.beside] if each.beside else least) - 1)
         name = f"{each.name} (compared with {each.beside})" if each.beside else each.name
-        rows.append([name, code(each.setting), number(costs[each.name], 0), f"{signed(added, 1)} %"])
+        rows.append([name, code(each.setting), number(costs[each.name], 0), f"{signed(added, 1)} %", each.matters])
     columns = ["effect", "compared with"]
     for name in CLOSED:
         columns += [f"*{name}*: change of force, mN", "change of resistance, mΩ"]
     columns += [f"*{OPENING}*: time open without the effect, ms", "with the effect, ms"]
     influences = [[each.name, code(each.off), *runs.influence(each)] for each in found if each.off]
     text, _ = rendered("effects.md", [], {
-        "effects": found, "length": 1e3 * LENGTH,
-        "costs": table(["effect", "setting", "instructions per ms", "added"], rows),
-        "influences": table(columns, influences),
+        "length": 1e3 * LENGTH, "influences": table(columns, influences),
+        "costs": table(["effect", "setting", "instructions per ms", "added", "when it matters"], rows),
     })  # fmt: skip
     page.write_text(text, encoding="utf-8")
     return page
