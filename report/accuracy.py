@@ -47,7 +47,7 @@ TIMES = "\N{MULTIPLICATION SIGN}"
 
 def read() -> pd.DataFrame:
     """Return what was measured; a run that has no error has an infinite one."""
-    found = pd.read_csv(MEASURED, dtype={"modes": str}, float_precision="round_trip")
+    found = pd.read_csv(MEASURED, dtype={"modes": str})
     return found.fillna(dict.fromkeys(ERRORS, np.inf))
 
 

@@ -1,6 +1,5 @@
 """Folders of the project."""
 
-import csv
 import re
 from pathlib import Path
 
@@ -8,14 +7,6 @@ ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
 PICTURES = DOCS / "report"
 OUT = ROOT / "out"
-
-Row = dict[str, str]
-
-
-def rows(path: Path) -> list[Row]:
-    """Return a table that was measured."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def rewrite(page: Path, part: str, text: str) -> None:

@@ -53,16 +53,15 @@ def peak(bench: Bench, values: Values, alpha: float) -> float:
 
 def number(bench: Bench, values: Values, asked: Number) -> float:
     """Return the component's value of a published number, in its unit."""
-    values, place = {**ALONE, **values, **asked.spring}, asked.place
-    barber: Values = {"effects.resistance": "Barber"}
-    ratio, frequency = place["ratio"], place["frequency"]
+    values, barber = {**ALONE, **values, **asked.spring}, {"effects.resistance": "Barber"}
+    ratio, frequency = asked.ratio, asked.frequency
     match asked.kind:
         case "natural":
             return bench.rest(values, "preload.frequency")
         case "stiff":
             return bench.rest({**values, "effects.contactLaw": "Hertz"}, "preload.frequency")
         case "peak":
-            return peak(bench, values, place["alpha"])
+            return peak(bench, values, asked.alpha)
         case "sudden":
             return 1e6 * bench.sudden(damped(values, ratio), frequency)
         case "resting":
@@ -191,7 +190,7 @@ def write(fits: list[Fit], asked: list[Number], values: Array) -> None:
         rows.writerow(["quantity", "location", "unit", "published", "fitted", *(each.law.name for each in fits)])
         for each, own in zip(asked, values.T, strict=True):
             shown = [f"{value:.5g}" for value in own]
-            rows.writerow([each.quantity, each.location, each.unit, f"{each.published:g}", int(each.fitted), *shown])
+            rows.writerow([each.quantity, each.location, each.unit, f"{each.published:g}", each.fitted, *shown])
     with PARAMETERS.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(["contact", "parameter", "unit", "value", "low", "high"])

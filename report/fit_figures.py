@@ -52,7 +52,7 @@ def frequencies(bench: Bench, contacts: Contacts, numbers: list[Number]) -> Figu
     for kind, fill, label in (("natural", "full", "published, prestressed"),
                               ("stiff", "none", "published, not prestressed")):  # fmt: skip
         own = [each for each in numbers if each.kind == kind]
-        places, values = [each.place["overtravel"] for each in own], [each.published for each in own]
+        places, values = [each.overtravel for each in own], [each.published for each in own]
         axes.plot(places, values, "o", color=RED, fillstyle=fill, label=label)
     axes.set(xlabel="overtravel [mm]", ylabel="first natural frequency [Hz]", xlim=(-0.03, 0.52), ylim=(0, 7800))
     axes.legend(fontsize="small", frameon=False, ncols=2, loc="upper left")
@@ -77,10 +77,10 @@ def amplitudes(bench: Bench, contacts: Contacts, numbers: list[Number]) -> Figur
             if frequency >= 1000:
                 right.plot(ratios, curve[1], STYLES[name], color=colour, label=label)
         for axes, kind in ((left, "force"), (right, "displacement")):
-            own = [each for each in numbers if each.kind == kind and each.place["frequency"] == frequency
+            own = [each for each in numbers if each.kind == kind and each.frequency == frequency
                    and "measured" not in each.quantity]  # fmt: skip
             scaled = [each.published / (base if kind == "displacement" and each.unit else 1) for each in own]
-            axes.plot([each.place["ratio"] for each in own], scaled, "o", color=colour, markeredgecolor=BLACK)
+            axes.plot([each.ratio for each in own], scaled, "o", color=colour, markeredgecolor=BLACK)
     measured = next(each.published for each in numbers if each.kind == "displacement" and "measured" in each.quantity)
     right.axhline(measured / base, color=GREY, linestyle="-.", linewidth=1, label="measured, 1000 Hz")
     right.plot([], [], "o", color="white", markeredgecolor=BLACK, label="published")

@@ -7,9 +7,10 @@ from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
+import pandas as pd
 
 from relay_contact import Component, run_many
-from report.files import OUT, ROOT, rows
+from report.files import OUT, ROOT
 from report.text import number, short, table, two_digits
 
 FOLDER = OUT / "accuracy"
@@ -37,7 +38,8 @@ def opening_map(workers: int) -> float:
 
 def rates() -> str:
     """Measure the runs a second in Python; return them as a table, with those of Rust."""
-    rust = {int(row["workers"]): float(row["simulations_per_second"]) for row in rows(FOLDER / "many.csv")}
+    measured = pd.read_csv(FOLDER / "many.csv")
+    rust = dict(zip(measured.workers.tolist(), measured.simulations_per_second.tolist(), strict=True))
     component = Component()
     kinds: dict[str, Callable[[int], float]] = {
         "*chatter-41g* at 100 to 3000 Hz, 10 ms of 1000 steps, Rust": rust.__getitem__,
@@ -56,7 +58,7 @@ def rates() -> str:
 def instances() -> str:
     """Return what an instance costs, as a table."""
     lines = []
-    for row in rows(FOLDER / "instances.csv"):
+    for row in pd.read_csv(FOLDER / "instances.csv", dtype=str).to_dict("records"):
         times = [two_digits(1e6 * float(row[f"{name}_seconds"])) for name in ("first", "later", "end")]
         lines.append([f"*{row['scene']}*", row["tolerance"], *times, row["started_kb"], row["run_kb"]])
     columns = ["scene", "tolerance", "start, µs", "start beside another one, µs", "end, µs",

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
+import pandas as pd
+
 from relay_contact import Values
-from report.files import DOCS, rows
+from report.files import DOCS
 
 ACCELERATION = 98.0
 """Of the excitation grid, m/s2 (Table 3)."""
@@ -78,29 +80,27 @@ def deviations(least: float, greatest: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Number:
-    """A published number: what it is of, in SI units but for the damping ratio and its own value."""
+    """A published number: what it is of (lengths in mm, mass coefficient in 1/s, frequency in Hz), and its value."""
 
     quantity: str
     kind: str
-    place: dict[str, float]
+    length: float
+    overtravel: float
+    ratio: float
+    alpha: float
+    frequency: float
     published: float
     unit: str
     location: str
-    fitted: bool
+    fitted: int
 
     @property
     def spring(self) -> Values:
         """The parameters of its length and overtravel."""
-        return {"beam.length": self.place["length"] * 1e-3, "contact.overtravel": self.place["overtravel"] * 1e-3}
+        return {"beam.length": self.length * 1e-3, "contact.overtravel": self.overtravel * 1e-3}
 
 
 def numbers() -> list[Number]:
     """Return the numbers of docs/published-numbers.csv."""
-    return [
-        Number(
-            row["quantity"], row["kind"],
-            {name: float(row[name] or "nan") for name in ("length", "overtravel", "ratio", "alpha", "frequency")},
-            float(row["published"]), row["unit"], row["location"], row["fitted"] == "1",
-        )
-        for row in rows(DOCS / "published-numbers.csv")
-    ]  # fmt: skip
+    table = pd.read_csv(DOCS / "published-numbers.csv").fillna({"unit": ""})
+    return [Number(**{str(name): value for name, value in row.items()}) for row in table.to_dict("records")]

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
@@ -19,7 +20,6 @@ from frictional import Frictional
 from own_spring_elements import CUBE, Drawing, Elements, missing, segments
 from reference import Reference
 from relay_contact import Array, Component, Scene, Values, fmu_path, read_table
-from report.files import rows as table
 from whole_relay import Coil, Relay
 
 FOLDER, FMU = Path(__file__).parent, fmu_path()
@@ -97,12 +97,11 @@ def test_the_published_case_has_the_values_that_the_specimen_was_identified_from
 def test_the_map_opens_first_where_linear_theory_says(run: Run, tmp_path: Path) -> None:
     run("opening_map")
     reference = Reference({"effects.axialForce": "None"})
-    for row in table(tmp_path / "opening-map.csv"):
-        frequency, acceleration, longest = (float(value) for value in row.values())
+    for frequency, acceleration, longest in zip(*read_table(tmp_path / "opening-map.csv").values(), strict=True):
         part = acceleration * abs(reference.force_response(frequency)) / reference.force
         # The force is a per cent from linear at its opening, and hysteretic where it opens for long.
         if not 0.97 < part < 1.1:
-            assert (longest > 0) == (part > 1), row
+            assert (longest > 0) == (part > 1), (frequency, acceleration)
 
 
 def circuits() -> list[str]:
@@ -187,18 +186,15 @@ def test_steps_taken_back_leave_no_trace_and_the_error_falls_with_the_tolerance(
     for instant in (OPENS, CLOSES):
         assert np.abs(time - instant).min() < 1e-9
 
-    work: dict[str, list[list[float]]] = {}
-    for row in table(tmp_path / "rollback.csv"):
-        entry = [float(row[name]) for name in ("setting", "steps.done", "error.load.current")]
-        work.setdefault(row["master"], []).append(entry)
+    runs = pd.read_csv(tmp_path / "rollback.csv", index_col="master")[["setting", "steps.done", "error.load.current"]]
     # Late by half a step as by a whole one, at a slope changed by 6 V / 1 mH at most; the largest of four delays
     # scatters by a sixth, and a line through six such points by 0.05: five times that.
-    fixed = np.array(work["fixed"])
+    fixed = runs.loc["fixed"].to_numpy()
     assert np.all(fixed[:, 2] < fixed[:, 0] * SOURCE / COIL)
     assert order(fixed[:, 0], fixed[:, 2]) == pytest.approx(1, abs=0.25)
     # The error of a step, h^3, is kept at the tolerance, and the sum goes with h^2: the tolerance to the power 2/3.
     # Each error scatters by a fifth, the slope over four decades by 0.04: three times that.
-    events = np.array([entry for entry in work["adaptive with events"] if entry[0] <= 1e-4])
+    events = runs[runs.setting <= 1e-4].loc["adaptive with events"].to_numpy()
     assert order(events[:, 0], events[:, 2]) == pytest.approx(2 / 3, abs=0.12)
     # What the events are worth: a tenth of the calls of the best fixed master, for a fiftieth of its error.
     assert events[0, 1] < fixed[-1, 1] / 10
@@ -232,8 +228,7 @@ def test_a_coil_makes_and_breaks_the_contact_as_in_one_solution_of_both(run: Run
 def test_the_bounce_of_a_closing_contact_is_that_of_a_second_solution(run: Run, tmp_path: Path) -> None:
     gap, overtravel, speed, damping = 20e-6, 200e-6, 0.06, 1e-6
     run("closing_bounce")
-    rows = [{name: float(value) for name, value in row.items()} for row in table(tmp_path / "closing-bounce.csv")]
-    shown, grid = rows[0], rows[1:]
+    shown, *grid = pd.read_csv(tmp_path / "closing-bounce.csv").to_dict("records")
     assert (shown["speed [m/s]"], shown["contact.damping [s]"]) == (speed, damping)
     course = np.column_stack(list(read_table(tmp_path / "closing-bounce-course.csv").values()))
     # The spring is at rest before: it is touched when the gap is travelled.
@@ -326,10 +321,9 @@ def test_segments_have_the_area_of_the_drawing(tmp_path: Path) -> None:
 @needs_programs
 def test_modes_in_the_component_are_the_whole_mesh(run: Run, tmp_path: Path) -> None:
     run("own_spring")
-    rows = {row["quantity"]: row for row in table(tmp_path / "own-spring.csv")}
+    rows = pd.read_csv(tmp_path / "own-spring.csv", index_col="quantity")
     assert len(rows) == 8
-    for name, row in rows.items():
-        whole, modes, parts = (float(row[each]) for each in ("finite_elements", "modes", "segments"))
+    for name, whole, modes, parts in rows[["finite_elements", "modes", "segments"]].itertuples():
         # The same structure: what differs is the peak between the samples of a spectrum (5 Hz), the Hertz contact
         # instead of a linear one, and the frequencies at which the program prints its response.
         assert modes == pytest.approx(whole, rel=5e-3 if "opening" in name else 2e-4), name
