@@ -1,71 +1,41 @@
-"""Does the contact open? The verdict of the standards on the published specimen, by the package's own tests."""
+"""Does the contact open? The published specimen over frequency, and the verdicts of standards on it."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 
-from relay_contact import Component, Values, side_by_side
+from relay_contact import Component, qualify, side_by_side
 from relay_contact.component import sine
 from relay_contact.figures import GRAVITY as G
-from relay_contact.qualification.excitation import Shock, Sine
+from relay_contact.figures import three
+from relay_contact.qualification import Standard, Tested
+from relay_contact.qualification.excitation import Sine
 from relay_contact.qualification.level import RESOLUTION, Lengths, threshold
 from relay_contact.qualification.relay import Relay
-from relay_contact.qualification.response import Response, respond
-from relay_contact.qualification.standards import Standard
-from relay_contact.qualification.trials import Piece, Specimen, sine_threshold, steady, sweep
-from report.bench import specimen
+from relay_contact.qualification.response import respond
+from relay_contact.qualification.trials import Specimen, sine_threshold, steady
 from report.figure import Curve, Figure
-from report.published import FORCE, PEAKS
-from report.spring import Spring
+from report.files import OUT
 from report.text import table
 
 RANGE = (10.0, 3000.0)  # Hz
 FINE = 9  # frequencies around the weakest
 UNIT = Sine("1 g", "", "measured", 1.0, 10.0, RANGE, 1.0)
 """At every frequency of the map 1 g, not limited by the displacement."""
-CONDITIONS = ("204 A", "204 B", "204 D")  # of MIL-STD-202 that the map shows
-DIGIT = 0.0005  # N, half a unit of the last digit of the published preload
-SHOCK = "test", "shock", "direction", "opens at all", "longest interruption", "smallest force, relative to the preload"
-
-
-@cache
-def standard() -> Standard:
-    """Return the standard whose monitor and shocks are taken, and whose vibration is asked for."""
-    return Standard.read("MIL-PRF-28776")
-
-
-@cache
-def levels() -> dict[str, Sine]:
-    """Return the levels of vibration by name; the last is the one asked for."""
-    found = {}
-    for each in (Standard.read("MIL-STD-202"), standard()):
-        for test in each.tests:
-            if isinstance(test, Sine) and (each is standard() or test.name in CONDITIONS):
-                name = f"{each.title.partition(',')[0]} {test.clause.partition(';')[0]}: {test.acceleration:g} g"
-                found[name] = test
-    return found
+CONDITIONS = ["204 A", "204 B", "204 D"]  # of MIL-STD-202
 
 
 @cache
 def subject() -> Specimen:
-    """Return the published specimen, in this process."""
-    component = Component()
-    values = readings(component)[0]
-    return Specimen(component, values, standard().contacts, linear(component, values))
-
-
-def readings(component: Component) -> list[Values]:
-    """Return the parameters by each reading of the publication, the first of which the map shows."""
+    """Return the published specimen, in this process: its first reading, under the monitor of the standard."""
+    component, contacts = Component(), Standard.read("MIL-PRF-28776").contacts
     relay = Relay.read("paper", component)
     (position,) = relay.positions.values()
-    return [{**position, **model.parameters} for model in relay.models]
-
-
-def linear(component: Component, values: Values) -> Response:
-    """Return the linear response of a specimen."""
-    return respond(component, values, standard().contacts.threshold)
+    values = {**position, **relay.models[0].parameters}
+    return Specimen(component, values, contacts, respond(component, values, contacts.threshold))
 
 
 @dataclass(frozen=True)
@@ -108,82 +78,9 @@ def thresholds(frequency: float) -> Thresholds:
     return Thresholds(frequency, guess, first, interrupts, sudden)
 
 
-def verdict(margin: float, uncertainty: float) -> str:
-    """Return the verdict of a margin that is known to a part of it."""
-    return "passed" if margin > 1 + uncertainty else "failed" if margin < 1 - uncertainty else "undecided"
-
-
-def seen(points: list[Thresholds]) -> tuple[str, list[tuple[Sine, float, float]]]:
-    """Run the levels; return their table, and the margin of each with its frequency (Hz)."""
-    rows, margins, uncertainty = [], [], total(uncertainties())
-    tasks = [(test, [each for each in points if test.band[0] <= each.frequency <= test.band[1]])
-             for test in levels().values()]  # fmt: skip
-    for name, (test, covered) in zip(levels(), tasks, strict=True):
-        frequencies = np.array([each.frequency for each in covered])
-        outcomes = sweep(subject(), test, frequencies, [subject().response])
-        factors = np.array([each.interrupts for each in covered]) * G / test.amplitude(frequencies)
-        lengths = np.array([max(failed.values(), default=0.0) for failed, _ in outcomes])
-        forces = np.array([left[0] for _, left in outcomes]) / rest()
-        at = int(factors.argmin())
-        margins.append((test, float(factors[at]), float(frequencies[at])))
-        longest, least = int(lengths.argmax()), int(forces.argmin())
-        rows.append([
-            name, "{:g} to {:g} Hz".format(*test.band),
-            verdict(factors[at], uncertainty), f"{factors[at]:.2f} at {frequencies[at]:.0f} Hz",
-            f"{duration(lengths[longest])} at {frequencies[longest]:.0f} Hz" if lengths.any() else "none",
-            f"{100 * forces[least]:.1f} % at {frequencies[least]:.0f} Hz",
-        ])  # fmt: skip
-    columns = ["level", "frequencies", "verdict", "smallest margin", "longest interruption", SHOCK[-1]]
-    return table(columns, rows), margins
-
-
-def duration(seconds: float) -> str:
-    """Return the length of an interruption in words."""
-    return f"{1e6 * seconds:.1f} µs" if seconds else "none"
-
-
-@cache
-def rest() -> float:
-    """Return the preload, N."""
-    with subject().start({}) as contact:
-        return contact.get("preload.force")
-
-
-def uncertainties() -> tuple[float, float]:
-    """Return how far the preload over the greatest force amplitude is uncertain, as parts.
-
-    By the difference of the published maximum from this model's, and by the last digit of the published preload.
-    """
-    ratio, frequency, known = PEAKS[0]
-    with subject().component.started(specimen(subject().component, ratio)) as contact:
-        found = float(Spring.of(contact).force(frequency)[0])
-    return abs(found / known - 1), DIGIT / FORCE
-
-
-def total(parts: tuple[float, float]) -> float:
-    """Return the uncertainty by both."""
-    return float(np.hypot(*parts))
-
-
-def shocks(quick: bool) -> str:
-    """Return the table of shocks."""
-    rows = []
-    tests = [test for test in standard().tests if isinstance(test, Shock)]
-    for test in tests[:1] if quick else tests:
-        for direction, sign in (("presses the contact", 1.0), ("pulls it open", -1.0)):
-            lengths, course, _ = Piece(test.course(), 1.0, 0.0).follow(subject(), sign, 1)
-            least = float(course[:, 2].min()) / rest()
-            rows.append([
-                f"{test.clause.rpartition(' of ')[2].rpartition(', ')[2]}, condition {test.name[-1]}",
-                f"{test.acceleration:g} g, {1e3 * test.duration:g} ms", direction, "yes" if least <= 0 else "no",
-                duration(max(lengths.values(), default=0.0)), f"{100 * least:.1f} %",
-            ])  # fmt: skip
-    return table(SHOCK, rows)
-
-
-def found(quick: bool) -> list[Thresholds]:
+def thresholds_over(quick: bool, levels: Iterable[Sine]) -> list[Thresholds]:
     """Return thresholds at equal ratios of frequency and at the ends of the levels, and more where they are lowest."""
-    ends = [frequency for test in levels().values() for frequency in test.band]
+    ends = [frequency for test in levels for frequency in test.band]
     frequencies = sorted({round(each, 6) for each in [*np.geomspace(*RANGE, 12 if quick else 80), *ends]})
     points = side_by_side(thresholds, frequencies)
     at = min(range(len(points)), key=lambda place: points[place].opens)
@@ -192,14 +89,14 @@ def found(quick: bool) -> list[Thresholds]:
     return sorted(points + side_by_side(thresholds, between), key=lambda each: each.frequency)
 
 
-def figure(points: list[Thresholds]) -> Figure:
+def figure(points: list[Thresholds], levels: dict[str, Sine]) -> Figure:
     """Draw the map."""
     frequencies = np.array([each.frequency for each in points])
     curves = [
         Curve("opens for 10 µs, steady vibration", frequencies, [each.interrupts for each in points]),
         Curve("the same after a sudden start", frequencies, [each.sudden for each in points], "dashed"),
     ]
-    for colour, (name, test) in enumerate(levels().items(), 1):
+    for colour, (name, test) in enumerate(levels.items(), 1):
         own = np.sort([*frequencies, test.corner])
         own = own[(own >= test.band[0]) & (own <= test.band[1])]
         curves.append(Curve(name, own, test.amplitude(own) / G, "dashed", colour))
@@ -207,27 +104,47 @@ def figure(points: list[Thresholds]) -> Figure:
     return Figure("opening-map", "Base acceleration that opens the contact", x, y, curves, "xy")
 
 
+def verdicts(judged: dict[str, Tested]) -> str:
+    """Return the table of verdicts."""
+    rows = []
+    for name, tested in judged.items():
+        first, margins = tested.margin, [each.margin.margin for each in tested.models]
+        longest = max(first.failed.values(), default=0.0)
+        rows.append([
+            name, tested.first.level, tested.verdict,
+            f"{three(first.margin)} ({three(first.low)} to {three(first.high)})",
+            f"{three(min(margins))} to {three(max(margins))}",
+            first.weakest, f"{1e6 * longest:.0f} µs" if longest else "none",
+        ])  # fmt: skip
+    return table(["test", "level", "verdict", "margin (95 % interval)", "margins by all readings", "weakest at",
+                  "longest interruption"], rows)  # fmt: skip
+
+
 def values(quick: bool) -> tuple[list[Figure], dict[str, Any]]:
     """Return the figures and the numbers of the section."""
-    points, parts = found(quick), uncertainties()
-    seen_levels, margins = seen(points)
-    asked, margin, frequency = margins[-1]
-    weakest = min(points, key=lambda each: each.opens)
-    elastic = linear(subject().component, readings(subject().component)[1])
-    needed = [float(each.sine(UNIT, 0.0)[1].min()) for each in (elastic, subject().response)]
-    at_2000 = min(points, key=lambda each: abs(each.frequency - 2000))
-    words = {"passed": "The contact passes", "failed": "The contact fails at"}
-    passed = [f"{test.acceleration:g} g" for test, each, _ in margins if verdict(each, total(parts)) == "passed"]
+    judged: dict[str, Tested] = {}
+    levels: dict[str, Sine] = {}
+    for standard, tests in (("MIL-STD-202", CONDITIONS), ("MIL-PRF-28776", [])):
+        found = qualify("paper", standard, tests=tests, out=OUT / "opening" / standard, quick=quick)
+        title = found.standard.title.partition(",")[0]
+        judged |= {f"{title} {tested.first.test}": tested for tested in found}
+        levels |= {f"{title} {test.clause.partition(';')[0]}: {test.acceleration:g} g": test
+                   for test in found.standard.tests if isinstance(test, Sine)}  # fmt: skip
+    points = thresholds_over(quick, levels.values())
+    asked = found["vibration (sine)"]
+    answers = {"pass": "The contact passes", "FAIL": "The contact fails at"}
+    sines = [tested.verdict for tested in judged.values() if tested.first.kind == "sine"]
+    accelerations = [test.acceleration for test in levels.values()]
+    passed = [f"{level:g} g" for level, verdict in zip(accelerations, sines, strict=True) if verdict == "pass"]
 
     def furthest(name: str) -> float:
         return 100.0 * max(abs(float(getattr(each, name)) / each.interrupts - 1) for each in points)
 
-    return [figure(points)], {
-        "answer": words.get(verdict(margin, total(parts)), "It is undecided whether the contact passes"),
-        "asked": asked.acceleration, "passed": ", ".join(passed) or "none of the levels",
-        "from_": margin * float(asked.amplitude(np.array(frequency))) / G,
-        "at": frequency, "uncertainty": 100 * total(parts), "weakest": weakest, "parts": [100 * part for part in parts],
-        "elastic": needed[0] / needed[1], "levels": seen_levels, "shocks": shocks(quick), "count": len(points),
-        "furthest": {"opens": furthest("opens"), "linear": furthest("linear")}, "at_2000": at_2000, "gravity": G,
-        "resolution": 100 * RESOLUTION,
+    return [figure(points, levels)], {
+        "answer": answers.get(asked.verdict, "It is undecided whether the contact passes"),
+        "asked": asked.margin, "margins": [each.margin.margin for each in asked.models], "level": accelerations[-1],
+        "passed": passed, "verdicts": verdicts(judged),
+        "weakest": min(points, key=lambda each: each.interrupts), "count": len(points),
+        "at_2000": min(points, key=lambda each: abs(each.frequency - 2000)), "gravity": G,
+        "furthest": {"opens": furthest("opens"), "linear": furthest("linear")}, "resolution": 100 * RESOLUTION,
     }  # fmt: skip
