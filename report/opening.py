@@ -10,7 +10,6 @@ import numpy as np
 from relay_contact import Component, qualify, side_by_side
 from relay_contact.component import sine
 from relay_contact.figures import GRAVITY as G
-from relay_contact.figures import three
 from relay_contact.qualification import Standard, Tested
 from relay_contact.qualification.excitation import Sine
 from relay_contact.qualification.level import RESOLUTION, Lengths, threshold
@@ -19,7 +18,6 @@ from relay_contact.qualification.response import respond
 from relay_contact.qualification.trials import Specimen, sine_threshold, steady
 from report.figure import Curve, Figure
 from report.files import OUT
-from report.text import table
 
 RANGE = (10.0, 3000.0)  # Hz
 FINE = 9  # frequencies around the weakest
@@ -104,22 +102,6 @@ def figure(points: list[Thresholds], levels: dict[str, Sine]) -> Figure:
     return Figure("opening-map", "Base acceleration that opens the contact", x, y, curves, "xy")
 
 
-def verdicts(judged: dict[str, Tested]) -> str:
-    """Return the table of verdicts."""
-    rows = []
-    for name, tested in judged.items():
-        first, margins = tested.margin, [each.margin.margin for each in tested.models]
-        longest = max(first.failed.values(), default=0.0)
-        rows.append([
-            name, tested.first.level, tested.verdict,
-            f"{three(first.margin)} ({three(first.low)} to {three(first.high)})",
-            f"{three(min(margins))} to {three(max(margins))}",
-            first.weakest, f"{1e6 * longest:.0f} µs" if longest else "none",
-        ])  # fmt: skip
-    return table(["test", "level", "verdict", "margin (95 % interval)", "margins by all readings", "weakest at",
-                  "longest interruption"], rows)  # fmt: skip
-
-
 def values(quick: bool) -> tuple[list[Figure], dict[str, Any]]:
     """Return the figures and the numbers of the section."""
     judged: dict[str, Tested] = {}
@@ -143,7 +125,7 @@ def values(quick: bool) -> tuple[list[Figure], dict[str, Any]]:
     return [figure(points, levels)], {
         "answer": answers.get(asked.verdict, "It is undecided whether the contact passes"),
         "asked": asked.margin, "margins": [each.margin.margin for each in asked.models], "level": accelerations[-1],
-        "passed": passed, "verdicts": verdicts(judged),
+        "passed": passed, "judged": judged,
         "weakest": min(points, key=lambda each: each.interrupts), "count": len(points),
         "at_2000": min(points, key=lambda each: abs(each.frequency - 2000)), "gravity": G,
         "furthest": {"opens": furthest("opens"), "linear": furthest("linear")}, "resolution": 100 * RESOLUTION,
