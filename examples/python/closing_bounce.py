@@ -56,27 +56,12 @@ def course(gap: float, overtravel: float, speed: float) -> tuple[Array, Array, f
     return time, position, start
 
 
-@dataclass
-class Outcome:
-    """Result of a make and a break, SI units."""
+SPEED, DAMPING, TOUCHED = "speed [m/s]", "contact.damping [s]", "first touch [s]"
+BOUNCES, TIME, OPEN = "bounces on make", "bounce time [s]", "open while bouncing [s]"
+LARGEST, BREAK, AGAIN = "largest force [N]", "break time [s]", "bounces on break"
+"""Columns of the table: a make and a break."""
 
-    speed: float
-    damping: float
-    first_touch: float
-    """After the start from the gap."""
-    bounces: int
-    bounce_time: float
-    open_time: float
-    """Sum of the bounces."""
-    largest_force: float
-    break_time: float
-    break_bounces: int
-
-
-COLUMNS = (
-    "speed [m/s],contact.damping [s],first touch [s],bounces on make,bounce time [s],open while bouncing [s],"
-    "largest force [N],break time [s],bounces on break"
-)
+Outcome = dict[str, float]
 
 
 @dataclass
@@ -119,7 +104,10 @@ class Relay:
         bounces = int(count) - 1
         times = (closing - touch, interrupted - touch) if bounces else (0.0, 0.0)
         again = int(broken - count) - 1
-        outcome = Outcome(speed, damping, touch, bounces, *times, largest, opening - back, again)
+        outcome = {
+            SPEED: speed, DAMPING: damping, TOUCHED: touch, BOUNCES: bounces, TIME: times[0], OPEN: times[1],
+            LARGEST: largest, BREAK: opening - back, AGAIN: again,
+        }  # fmt: skip
         columns = [np.append(start, rows[name]) for name, start in zip(SHOWN, first, strict=True)]
         return outcome, np.column_stack([time, *columns])
 
@@ -132,7 +120,7 @@ def edges(centres: Array) -> Array:
 
 def draw_map(axes: Axes, outcomes: pd.DataFrame, name: str, title: str) -> None:
     """Draw outcomes over speed and damping: numbers of bounces in as many colours, times (s) on a logarithmic scale."""
-    grid, counts = outcomes.pivot(index="damping", columns="speed", values=name), name != "bounce_time"
+    grid, counts = outcomes.pivot(index=DAMPING, columns=SPEED, values=name), name != TIME
     most = max(int(outcomes[name].max()), 1)
     norm = BoundaryNorm(np.arange(most + 2) - 0.5, 256) if counts else LogNorm()
     shown = grid if counts else np.ma.masked_equal(1e6 * grid, 0)
@@ -155,27 +143,27 @@ def draw(path: Path, relay: Relay, outcomes: pd.DataFrame, shown: Outcome, rows:
     """Draw the courses of one make and break, and the maps."""
     figure, ((make, count, length), (open_, delay, again)) = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
     time, force, indentation = rows.T
-    since = 1e6 * (time - shown.first_touch)
-    near = (since > -40) & (since < max(250, 1.5e6 * shown.bounce_time))
+    since = 1e6 * (time - shown[TOUCHED])
+    near = (since > -40) & (since < max(250, 1.5e6 * shown[TIME]))
     make.plot(since[near], force[near], color=BLUE, label="contact force")
     across = make.get_xaxis_transform()
     make.fill_between(since[near], 0, 1, where=force[near] <= 0, color=RED, alpha=0.2, transform=across, lw=0)
     make.fill_between([], [], color=RED, alpha=0.2, label="open")
     make.set(xlabel="time after the first touch [µs]", ylabel="contact force [N]", title="Make")
-    since = 1e3 * (time - course(relay.gap, relay.overtravel, shown.speed)[2])
-    last = 1e3 * shown.break_time
+    since = 1e3 * (time - course(relay.gap, relay.overtravel, shown[SPEED])[2])
+    last = 1e3 * shown[BREAK]
     near = (since > last - 2) & (since < last + 4)
     open_.plot(since[near], -1e6 * indentation[near], color=BLUE, label="gap between the contacts")
     open_.axvline(last, color=RED, linestyle="--", label="last separation")
     open_.set(xlabel="time after the actuator starts back [ms]", ylabel="gap [µm]", title="Break")
     for axes in (make, open_):
         axes.legend(fontsize="small", frameon=False)
-    draw_map(count, outcomes, "bounces", "Make: number of bounces")
-    draw_map(length, outcomes, "bounce_time", "Make: bounce time (grey: no bounce)")
-    draw_map(again, outcomes, "break_bounces", "Break: number of bounces")
-    dampings, speeds = outcomes["damping"].unique(), outcomes["speed"].unique()
+    draw_map(count, outcomes, BOUNCES, "Make: number of bounces")
+    draw_map(length, outcomes, TIME, "Make: bounce time (grey: no bounce)")
+    draw_map(again, outcomes, AGAIN, "Break: number of bounces")
+    dampings, speeds = outcomes[DAMPING].unique(), outcomes[SPEED].unique()
     for damping, colour in zip(dampings[[0, len(dampings) // 2, -1]], (BLUE, ORANGE, RED), strict=True):
-        delays = 1e3 * outcomes["break_time"][outcomes["damping"] == damping]
+        delays = 1e3 * outcomes[BREAK][outcomes[DAMPING] == damping]
         delay.plot(1e3 * speeds, delays, ".-", color=colour, label=f"damping {1e6 * damping:.3g} µs")
     passing = 1.5 * relay.overtravel / speeds
     delay.plot(1e3 * speeds, 1e3 * passing, "--", color=GREY, label="actuator passes the spring's rest position")
@@ -188,10 +176,10 @@ def draw(path: Path, relay: Relay, outcomes: pd.DataFrame, shown: Outcome, rows:
         axes.xaxis.set_major_formatter("{x:g}")
         axes.yaxis.set_major_formatter("{x:g}")
     for axes in (count, length, again):
-        axes.plot(1e3 * shown.speed, 1e6 * shown.damping, "x", color="white", markersize=8, markeredgewidth=2)
+        axes.plot(1e3 * shown[SPEED], 1e6 * shown[DAMPING], "x", color="white", markersize=8, markeredgewidth=2)
     figure.suptitle(
         f"Relay contact, gap {1e6 * relay.gap:g} µm, overtravel {1e6 * relay.overtravel:g} µm. Left, and crosses: "
-        f"{1e3 * shown.speed:g} mm/s, contact damping {1e6 * shown.damping:g} µs. "
+        f"{1e3 * shown[SPEED]:g} mm/s, contact damping {1e6 * shown[DAMPING]:g} µs. "
         f"A bounce is an interruption of {1e6 * relay.minimum:g} µs or more."
     )
     save(figure, path, dpi=130)
@@ -217,18 +205,17 @@ def main() -> None:
         found.append(relay.run(float(speed), float(damping))[0])
     outcomes = pd.DataFrame(found)
     paths = [given.out / name for name in ("closing-bounce.csv", "closing-bounce-course.csv", "closing-bounce.png")]
-    write_table(paths[0], COLUMNS, pd.DataFrame([shown, *found]))
+    pd.DataFrame([shown, *found]).to_csv(paths[0], index=False, float_format="%.12g")
     write_table(paths[1], "time [s],contact.force [N],contact.indentation [m]", rows)
     draw(paths[2], relay, outcomes, shown, rows)
     print(f"{given.speed:g} mm/s, contact damping {given.damping:g} µs")
-    touch = f"first touch after {1e6 * shown.first_touch:.3f} µs, largest force {shown.largest_force:.2f} N"
-    bounced = f"for {1e6 * shown.bounce_time:.2f} µs, open for {1e6 * shown.open_time:.2f} µs of it"
-    print(f"make: {touch}, bounces {shown.bounces}, {bounced}")
-    print(f"break: bounces {shown.break_bounces}, last separation after {1e3 * shown.break_time:.3f} ms")
-    most = max(found, key=lambda outcome: outcome.bounce_time)
-    where = f"{1e3 * most.speed:.3g} mm/s, {1e6 * most.damping:.3g} µs"
-    calm = sum(outcome.bounces == 0 for outcome in found)
-    print(f"map: longest bounce time {1e6 * most.bounce_time:.1f} µs at {where}, none in {calm} of {len(outcomes)}")
+    touch = f"first touch after {1e6 * shown[TOUCHED]:.3f} µs, largest force {shown[LARGEST]:.2f} N"
+    bounced = f"for {1e6 * shown[TIME]:.2f} µs, open for {1e6 * shown[OPEN]:.2f} µs of it"
+    print(f"make: {touch}, bounces {shown[BOUNCES]}, {bounced}")
+    print(f"break: bounces {shown[AGAIN]}, last separation after {1e3 * shown[BREAK]:.3f} ms")
+    most, calm = max(found, key=lambda each: each[TIME]), sum(each[BOUNCES] == 0 for each in found)
+    where = f"{1e3 * most[SPEED]:.3g} mm/s, {1e6 * most[DAMPING]:.3g} µs"
+    print(f"map: longest bounce time {1e6 * most[TIME]:.1f} µs at {where}, none in {calm} of {len(outcomes)}")
     print(*paths, sep="\n")
 
 

@@ -127,24 +127,15 @@ class Mesh:
 
     @classmethod
     def read(cls, text: str) -> "Mesh":
-        """Read what gmsh wrote."""
-        mesh, into = cls({}, []), ""
-        for line in text.splitlines():
-            if line.startswith("*"):
-                into = line[1:].split(",")[0].strip().upper()
-                if into == "ELEMENT":
-                    mesh.blocks.append((re.findall(r"type=(\w+)", line)[0], []))
-                continue
-            numbers = line.replace(",", " ").split()
-            if into == "NODE":
-                mesh.nodes[int(numbers[0])] = np.array([float(each) for each in numbers[1:]])
-            elif into == "ELEMENT":
-                # An element with many nodes goes on in a second line, which the first announces by its last comma.
-                rows = mesh.blocks[-1][1]
-                if rows and len(rows[-1]) <= int(mesh.blocks[-1][0][3:]):
-                    rows[-1] += [int(each) for each in numbers]
-                else:
-                    rows.append([int(each) for each in numbers])
+        """Read what gmsh wrote: sections of numbers; an element with many nodes goes on in a second line."""
+        mesh = cls({}, [])
+        for keyword, options, rows in re.findall(r"^\*(\w+)(.*)\n((?:[^*\n].*\n)+)", text, re.MULTILINE):
+            numbers = np.array(rows.replace(",", " ").split())
+            if keyword.upper() == "NODE":
+                mesh.nodes |= {int(row[0]): row[1:] for row in numbers.reshape(-1, 4).astype(float)}
+            elif keyword.upper() == "ELEMENT":
+                (kind,) = re.findall(r"type=(\w+)", options)
+                mesh.blocks.append((kind, numbers.reshape(-1, 1 + int(kind[3:])).astype(int).tolist()))
         return mesh
 
     def deck(self, written: str, drawing: Drawing) -> str:
