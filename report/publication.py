@@ -99,6 +99,10 @@ class Publication:
         """Return the same in the frequency domain, with mass damping (1/s)."""
         return greatest(self.spring(alpha=alpha).force(LINEAR), LINEAR)
 
+    def linear_force(self, ratio: float) -> float:
+        """Return the greatest force amplitude (cN) of a ratio in the grid, if the contact never opened."""
+        return float(self.spring(ratio).force(GRID).max())
+
     def elastic(self, ratio: float) -> tuple[Spring, Spring]:
         """Return the springs of a ratio whose elastic part is compared: with the start values, and refitted."""
         return self.spring(ratio), self.refitted.of_ratio(ratio)

@@ -47,8 +47,6 @@ FREQUENCY_DOMAIN_PEAKS = ((3000.0, 1300.0, 8.7), (7000.0, 1100.0, 4.2))
 """Mass coefficient, Hz, cN (section 3.2, Fig. 9)."""
 EQUIVALENT = ((10.0, 5125.0, "not stated"), (20.0, 10250.0, "within 8 %"), (30.0, 15375.0, "within 8 %"))
 """Ratio, the mass coefficient that goes with it, 1/s, and the deviation between both domains (section 4.2, Fig. 19)."""
-ALPHA_PER_BETA = 1610065.0
-"""Mass coefficient over stiffness coefficient, 1/s2 (eq. 33)."""
 
 RESISTANCE, EXPONENT = 7.4118, 0.9515
 """At 1 N, mOhm, and the exponent of the force (eq. 29)."""

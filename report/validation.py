@@ -11,7 +11,7 @@ from relay_contact.figures import significant
 from report import fit
 from report import published as paper
 from report.figure import Figure
-from report.publication import GRID, Publication
+from report.publication import Publication
 from report.published import FORCE, RATIOS
 from report.spring import PARAMETERS, RIVET, SOURCES, Specimen, identified, sensitivities
 from report.text import number, percent, rendered, signed, table
@@ -37,68 +37,47 @@ def points(published: float, value: float) -> str:
 
 def page(of: Publication, figures: list[Figure]) -> tuple[str, dict[str, str]]:
     """Return docs/validation.md, and what its sections say in a sentence, by their titles."""
-    shared = {"of": of, "paper": paper, "row": row, "difference": difference, "points": points}
-    found = reproduced(of) | findings(of) | identification(of) | fitted_contacts()
-    return rendered("validation.md", figures, shared | found)
+    shared = {"of": of, "paper": paper, "row": row, "difference": difference, "points": points, "eq9": prestress(of)}
+    return rendered("validation.md", figures, shared | reproduced(of) | identification(of) | fitted_contacts())
 
 
 def reproduced(of: Publication) -> dict[str, Any]:
     """Return numbers of the sections on what is reproduced and what is not."""
-    spring = of.spring()
-    ends = FORCE - paper.FORCE_AMPLITUDE / 100, FORCE + paper.FORCE_AMPLITUDE / 100
-    measured = paper.LEAST_RESISTANCE, paper.GREATEST_RESISTANCE
     inverted = []
     for _, least, greatest in paper.RESISTANCE_DEVIATIONS:
-        high = paper.force(measured[0] * (1 + 0.01 * least))
-        low = paper.force(measured[1] * (1 - 0.01 * greatest))
+        high = paper.force(paper.LEAST_RESISTANCE * (1 + 0.01 * least))
+        low = paper.force(paper.GREATEST_RESISTANCE * (1 - 0.01 * greatest))
         inverted.append(((high + low) / 2, 50 * (high - low)))
     found = np.abs([of.deviations(ratio) for ratio, *_ in paper.RESISTANCE_DEVIATIONS])
     weakly = of.spring(RATIOS[0])
     places = np.linspace(0, 1, 101)
     shape = [abs(weakly.deflection(of.rest("preload.frequency"), place)[0]) for place in places]
-    rest = 100 * of.rest("preload.force")
     alphas, apart = of.by_alpha
-    damping = float(of.component.start("beam.stiffnessDamping"))
     return {
-        "damping": damping,
         "most_excess": np.ceil(np.abs(of.excess()).max()),
-        "own_law": [paper.resistance(end) / known for end, known in zip(ends, measured[::-1], strict=True)],
         "inverted": inverted,
         "furthest": float(found[:, 1].max()), "nearest": float(found[:, 0].min()),
         "best_alpha": alphas[int(np.argmin(apart))],
         "shape": {"tip": shape[-1] / max(shape), "place": float(places[int(np.argmax(shape))])},
-        "linear_peaks": [100 * float(of.spring(ratio).force(GRID).max()) / rest for ratio in (0.1, 1.0, 5.0)],
-        "refitted": {
-            "rivet": 1e6 * of.refitted.rivet, "damping": of.refitted.contact_damping / spring.contact_damping,
-        },
         "scene_rivet": 1e6 * float(Scene.read("paper-elastic").values["tip.mass"]),
-        "first_damping": np.pi * of.rest("preload.frequency") * damping,
         "misfits": of.misfits(),
     }  # fmt: skip
 
 
-def findings(of: Publication) -> dict[str, Any]:
-    """Return numbers of the findings."""
-    amplitudes = [run.amplitude for run in of.literal]
-    first = of.rest("preload.frequency")
+def prestress(of: Publication) -> dict[str, Any]:
+    """Return what the axial force of eq. 9 does, and which force the published shift of the frequency asks for."""
+    first, axial, buckling = of.rest("preload.frequency"), of.rest("preload.axialForce"), of.spring().buckling
     without = of.rest("preload.frequency", effects_axialForce="None")
-    axial, spring = of.rest("preload.axialForce"), of.spring()
     shift, known = without - first, paper.WITHOUT_PRESTRESS - paper.WITH_PRESTRESS
     wanted = without * paper.WITH_PRESTRESS / paper.WITHOUT_PRESTRESS
 
     def excess(force: float) -> float:
         return of.rest("preload.frequency", effects_axialForce="Prescribed", beam_axialForce=force) - wanted
 
-    needed = brentq(excess, 0.0, 0.99 * spring.buckling)
-    beta, (_, alpha, _) = paper.BETA, paper.EQUIVALENT[0]
+    needed = brentq(excess, 0.0, 0.99 * buckling)
     return {
-        "literal": [min(amplitudes), max(amplitudes)], "omega": paper.ALPHA_PER_BETA**0.5, "first": first,
-        "tau": 2 * np.pi, "quotient": alpha / beta, "si_beta": f"{beta / (4 * np.pi**2):.3e}".replace("e-0", "e-"),
-        "eq32": 1e6 * alpha / (2 * np.pi * paper.WITH_PRESTRESS) ** 2,
-        "eq9": {
-            "force": 1e3 * axial, "shift": shift, "times": known / shift, "needed": needed,
-            "part": 100 * needed / spring.buckling, "buckling": spring.buckling,
-        },
+        "force": 1e3 * axial, "shift": shift, "times": known / shift, "needed": needed,
+        "part": 100 * needed / buckling, "buckling": buckling,
     }  # fmt: skip
 
 
