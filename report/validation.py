@@ -101,9 +101,6 @@ def fitted_contacts() -> dict[str, Any]:
     numbers = pd.read_csv(fit.TABLE, keep_default_na=False)
     parameters: Any = pd.read_csv(fit.PARAMETERS, index_col=["contact", "parameter"]).fillna({"unit": ""})
 
-    def parameter(contact: str, name: str) -> float:
-        return float(parameters.value[contact, name])
-
     def find(text: str) -> Any:  # noqa: ANN401
         return numbers[numbers.quantity.str.contains(text, regex=False)].iloc[0]
 
@@ -129,35 +126,25 @@ def fitted_contacts() -> dict[str, Any]:
         return f"{significant(value, 3)} {unit}".strip() + (", undetermined" if high > 100 * low else interval)
 
     fitted, others = (numbers[numbers.fitted == each] for each in (1, 0))
-    rms = {contact: parameter(contact, "rms") for contact in CONTACTS}
+    rms = {contact: float(parameters.value[contact, "rms"]) for contact in CONTACTS}
     lines = [[name, *(cell(contact, name) for contact in CONTACTS)] for name in parameters.loc["Rough"].index[1:]]
     # Those fitted, and the displacement with the weakest damping, which stands first among the others.
     with_weakest = pd.concat([fitted, others[:1]])
-    stiffness = parameter("Rough", "contact stiffness at 0.152 N")
-    exponent = parameter("Rough", "exponent of the stiffness")
-    rest, stiff, phase = find("resistance at rest"), find("contact as a spring"), find("phase")
-    law = stiffness * rest["Rough"] / rest["published"]
-    before, after = find("s = 0.45 mm"), find("s = 0.5 mm")
+    stiffness = parameters.value.xs("contact stiffness at 0.152 N", level="parameter")
+    exponent = parameters.value["Rough", "exponent of the stiffness"]
+    rest = find("resistance at rest")
+    law = stiffness.Rough * rest.Rough / rest.published
     short = [find(text) for text in ("s = 0.45 mm", "L = 7.5 mm")]
     return {
         "rms": rms,
-        "fitted": compared(fitted,
-                           ["**rms**", "", *(f"**{number(each, 1)} %**" for each in rms.values()), ""]),
+        "fitted": compared(fitted, ["**rms**", "", *(f"**{number(each, 1)} %**" for each in rms.values()), ""]),
         "others": compared(others),
         "fits": table(["parameter", *CONTACTS.values()], lines),
-        "softer_support": paper.STIFFNESS / parameter("support", "contact stiffness at 0.152 N"),
-        "table4": 100 * (paper.DISPLACEMENTS[0.1] / paper.DISPLACEMENTS[1.0] - 1),
+        "find": find, "stiffness": stiffness,
         "with_weakest": {contact: 100 * np.mean(np.log(with_weakest[contact] / with_weakest.published) ** 2) ** 0.5
                          for contact in CONTACTS},
-        "softer": paper.STIFFNESS / stiffness,
         "worst_rough": np.ceil(100 * (fitted.Rough / fitted.published - 1).abs().max()),
-        "short": {contact: [percent(each[contact] / each["published"], 1) for each in short] for contact in CONTACTS},
-        "rest": rest, "law_stiffness": law, "exponent": exponent,
-        "crossing": FORCE * (stiffness / law) ** (1 / (paper.EXPONENT - exponent)),
-        "roughness": FORCE / paper.ROUGHNESS,
-        "vibrating": [find(f"{name} resistance")["Rough"] for name in ("least", "greatest")],
-        "stiff": {"value": stiff["Rough"], "above": 100 * (stiff["Rough"] / stiff["published"] - 1)},
-        "fall": {"published": after["published"] - before["published"], "rough": after["Rough"] - before["Rough"]},
-        "phase": {"rough": phase["Rough"], "hertz": phase["Hertz"]},
-        "weakest": {"rough": find("ratio 0.1")["Rough"]}, "sudden": find("after a sudden start")["Rough"],
+        "short": {contact: [percent(each[contact] / each.published, 1) for each in short] for contact in CONTACTS},
+        "law_stiffness": law, "exponent": exponent,
+        "crossing": FORCE * (stiffness.Rough / law) ** (1 / (paper.EXPONENT - exponent)),
     }  # fmt: skip
