@@ -16,8 +16,22 @@ import cmath
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from relay_contact import Array
+
 State = tuple[float, float]
 """Load current [A] and capacitor voltage [V]."""
+POINTS = 8  # given of a communication step
+
+
+@dataclass
+class Course:
+    """The circuit within a communication step, at times from its start to its end."""
+
+    time: Array
+    current: Array
+    capacitor: Array
 
 
 @dataclass(frozen=True)
@@ -55,3 +69,9 @@ class Circuit:
         i, q = state[0] - current, state[1] - capacitor
         current += even * i + odd * ((a - mean) * i + b * q)
         return current, capacitor + even * q + odd * (c * i + (d - mean) * q)
+
+    def advance(self, start: State, conductance: float, step: float) -> Course:
+        """Simulate a communication step."""
+        times = np.linspace(0, step, POINTS + 1)
+        current, capacitor = np.array([self.after(start, conductance, time) for time in times.tolist()]).T
+        return Course(times, current, capacitor)

@@ -21,9 +21,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from tqdm import tqdm
 
-from circuit import Circuit, State
+from circuit import Circuit
 from common import legend_beside, parser, read_arguments, save
-from ngspice import Course, NgSpice
+from ngspice import NgSpice
 from relay_contact import Array, Component, Contact, Scene, write_table
 from relay_contact.figures import BLUE, GREY, ORANGE, RED, SKY
 
@@ -32,20 +32,9 @@ PERIOD = 1e-3  # s, of the vibration
 RANGE = (12.0, 0.4)  # V and A: below these a contact draws no arc
 OUTPUTS = ["contact.conductance", "contact.lastOpening", "contact.lastClosing"]
 COLUMNS = ["time", *OUTPUTS, "load.current", "capacitor.voltage", "circuit.voltage", "circuit.current"]
-POINTS = 8  # drawn in a communication step
 
 
-class BuiltIn:
-    """Closed form."""
-
-    def advance(self, start: State, conductance: float, step: float) -> Course:
-        """Simulate a communication step."""
-        times = np.linspace(0, step, POINTS + 1)
-        current, capacitor = np.array([CIRCUIT.after(start, conductance, time) for time in times.tolist()]).T
-        return Course(times, current, capacitor)
-
-
-Solver = BuiltIn | NgSpice
+Solver = Circuit | NgSpice
 
 
 @dataclass
@@ -125,7 +114,7 @@ def chosen(name: str | None) -> tuple[str, Solver]:
             if name == "ngspice":
                 raise SystemExit(f"{error}: {advice}, or choose --circuit built-in") from error
             print(f"{error}: {advice}. The built-in circuit is used instead.")
-    return "built-in", BuiltIn()
+    return "built-in", CIRCUIT
 
 
 def main() -> None:
@@ -149,7 +138,7 @@ def main() -> None:
         raise SystemExit(str(error)) from error
     print(f"{name}, communication step {given.step:g} us, {1e3 * stop:g} ms\n{summary(result)}")
     if name == "ngspice":
-        other = run(BuiltIn(), "built-in, to compare")
+        other = run(CIRCUIT, "built-in, to compare")
         gaps = [np.abs(result.columns[each] - other.columns[each]).max() for each in COLUMNS[4:6]]
         print(f"ngspice and the closed form differ by {gaps[0]:.1e} A and {gaps[1]:.1e} V at most")
     paths = [given.out / f"circuit-rl{end}" for end in (".csv", ".png")]

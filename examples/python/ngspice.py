@@ -9,25 +9,15 @@ import contextlib
 import ctypes
 import ctypes.util
 from collections import deque
-from dataclasses import dataclass
 
 import numpy as np
 
-from circuit import Circuit, State
+from circuit import Circuit, Course, State
 from relay_contact import Array
 
 INNER_STEP, RELATIVE_TOLERANCE = 1e-7, 1e-7  # s, longest; 1
 LIBRARIES = ["libngspice.so.0", "libngspice.so", "libngspice.0.dylib", "libngspice.dylib", "ngspice.dll"]
 LIBRARIES += ["libngspice-0.dll", "/opt/homebrew/lib/libngspice.dylib"]
-
-
-@dataclass
-class Course:
-    """The circuit within a communication step, at times from its start to its end."""
-
-    time: Array
-    current: Array
-    capacitor: Array
 
 
 class Vector(ctypes.Structure):

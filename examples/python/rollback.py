@@ -68,8 +68,6 @@ class Master:
     """Calls of doStep."""
     rejected: int = 0
     """Steps repeated."""
-    states: int = 0
-    """FMU states saved and not freed yet."""
     seconds: float = 0.0
     """Wall time."""
     error: float = 0.0
@@ -112,7 +110,6 @@ def adapt(master: Master, stop: float, tolerance: float, events: bool) -> None:
     while stop - time > SHORTEST:
         length = min(length, LONGEST, stop - time)
         saved, before = contact.fmu.getFMUstate(), (master.state, master.conductance)
-        master.states += 1
 
         def go_back(saved: object = saved, before: tuple[State, float] = before) -> None:
             contact.fmu.setFMUstate(saved)
@@ -141,7 +138,6 @@ def adapt(master: Master, stop: float, tolerance: float, events: bool) -> None:
                 length = wanted = factor * length
         finally:
             contact.fmu.freeFMUstate(saved)
-            master.states -= 1
         master.rows += rows
         time += length
         # A step shortened by an event says little about the length of the next one.
@@ -205,7 +201,6 @@ def main() -> int:
     table = pd.DataFrame(rows, columns=columns)
     print(f"{table.to_string(index=False, float_format='{:.3g}'.format)}\nfixed steps and wall times in s, errors in A")
     print(f"the accepted steps again without repetition: {'the same bits' if same else 'DIFFERENT RESULTS'}")
-    print(f"FMU states not freed: {sum(each.states for each in masters)}")
     paths = [given.out / f"rollback{end}" for end in (".csv", "-steps.csv", ".png")]
     table.to_csv(paths[0], index=False, float_format="%.12g")
     write_table(paths[1], "time,step,load.current,capacitor.voltage,contact.conductance.mean", shown.rows, digits=17)
