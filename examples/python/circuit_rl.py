@@ -32,8 +32,6 @@ PERIOD = 1e-3  # s, of the vibration
 RANGE = (12.0, 0.4)  # V and A: below these a contact draws no arc
 OUTPUTS = ["contact.conductance", "contact.lastOpening", "contact.lastClosing"]
 COLUMNS = ["time", *OUTPUTS, "load.current", "capacitor.voltage", "circuit.voltage", "circuit.current"]
-
-
 Solver = Circuit | NgSpice
 
 
@@ -120,8 +118,7 @@ def chosen(name: str | None) -> tuple[str, Solver]:
 def main() -> None:
     """Run the coupling."""
     step_ = (2.0, 0.1, 50.0, "µs", "communication step of the waveforms")
-    text = "The contact in a 6 V RL circuit. Takes half a minute, with --quick some seconds."
-    line = parser(text, "2.5 ms instead of 10 ms", step=step_)
+    line = parser(__doc__, "2.5 ms instead of 10 ms", "half a minute, with --quick some seconds", step=step_)
     line.add_argument("--circuit", choices=["ngspice", "built-in"], help="default: ngspice if it is installed")
     given = read_arguments(line)
     name, solver = chosen(given.circuit)

@@ -128,8 +128,7 @@ def main() -> None:
     """Run it with several steps, compare."""
     voltage, mass = (12.0, 1.0, 100.0, "V", "of the source"), (2e-3, 1e-4, 0.1, "kg", "of the armature")
     quick = "steps of 5 and 10 µs in place of 2, 4 and 8"
-    line = parser("Switch a contact by its coil. Takes some seconds.", quick, voltage=voltage, mass=mass)
-    given = read_arguments(line)
+    given = read_arguments(parser(__doc__, quick, "some seconds", voltage=voltage, mass=mass))
     component, coil = Component(given.fmu), Coil(given.voltage)
     steps = [5, 10] if given.quick else [2, 4, 8]  # µs
     grids = [np.arange(0, round(1e6 * END) + step, step) / 1e6 for step in steps]

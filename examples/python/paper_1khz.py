@@ -82,7 +82,7 @@ def draw(outputs: Outputs, period: int, title: str, path: Path) -> None:
 
 def main() -> int:
     """Run the case."""
-    given = read_arguments(parser("Run the published 1 kHz case under FMPy and compare."))
+    given = read_arguments(parser(__doc__))
     scene = Scene.read("paper-1khz")
     outputs = simulate(Component(given.fmu), scene)
     period = round(1 / (float(scene.values["excitation.frequency"]) * scene.step))

@@ -169,8 +169,8 @@ def draw(masters: list[Master], path: Path) -> None:
 
 def main() -> int:
     """Run the three masters over tolerances and steps."""
-    text = "Adaptive master with FMU states. Takes half a minute, with --quick five seconds."
-    given = read_arguments(parser(text, "2.5 ms instead of 10 ms, fixed steps down to 0.5 µs only"))
+    quick = "2.5 ms instead of 10 ms, fixed steps down to 0.5 µs only"
+    given = read_arguments(parser(__doc__, quick, "half a minute, with --quick five seconds"))
     stop, lengths = (2.5 * PERIOD, FIXED[:-2]) if given.quick else (10 * PERIOD, FIXED)
     component = Component(given.fmu)
     settings = [("adaptive with events", REFERENCE), *(("fixed", length) for length in lengths)]
