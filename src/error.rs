@@ -149,8 +149,8 @@ pub enum Remark {
 }
 
 impl SceneError {
-    pub(crate) fn out_of_range(name: &'static str, value: f64, unit: &'static str, allowed: String) -> Self {
-        Self::OutOfRange { name, value, unit, allowed }
+    pub(crate) fn out_of_range(name: &'static str, value: f64, unit: &'static str, allowed: &str) -> Self {
+        Self::OutOfRange { name, value, unit, allowed: format!("allowed is {allowed}") }
     }
 }
 

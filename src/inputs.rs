@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 include!(concat!(env!("OUT_DIR"), "/inputs.rs"));
 
 impl Inputs {
+    /// Inputs that move bodies.
+    pub const MOVING: [RealInput; INPUTS] =
+        [RealInput::SupportDisplacement, RealInput::SecondDisplacement, RealInput::PusherDisplacement];
+
     /// Value of an input.
     pub fn real(&self, input: RealInput) -> f64 {
         let mut inputs = *self;
@@ -21,7 +25,7 @@ impl Inputs {
     /// # Errors
     /// [`SceneError::OutOfRange`] outside the range of `modelDescription.xml`; the inputs are then unchanged.
     pub fn set_real(&mut self, input: RealInput, value: f64) -> Result<(), SceneError> {
-        check_range(input.variable(), value, false)?;
+        check_range(input.variable(), value)?;
         *self.course_mut(input).0 = value;
         Ok(())
     }
@@ -34,7 +38,7 @@ impl Inputs {
         if !rate.is_finite() {
             let Variable { name, unit, .. } = *input.variable();
             let allowed = "allowed as derivative is any finite number".to_owned();
-            return Err(SceneError::out_of_range(name, rate, unit, allowed));
+            return Err(SceneError::OutOfRange { name, value: rate, unit, allowed });
         }
         *self.course_mut(input).1 = rate;
         Ok(())
@@ -46,23 +50,29 @@ impl Inputs {
         *inputs.course_mut(input).1
     }
 
+    /// Value of an input after `size` seconds.
+    pub fn after(&self, input: RealInput, size: f64) -> f64 {
+        self.real(input) + self.rate(input) * size
+    }
+
+    /// Displacements of the bodies that inputs move after `size` seconds, m, in the order of [`Self::MOVING`].
+    pub fn displacements_after(&self, size: f64) -> Ways {
+        Self::MOVING.map(|input| self.after(input, size))
+    }
+
     /// Checks that the values after `size` seconds are in range.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for the first that is not.
     pub fn check_after(&self, size: f64) -> Result<(), SceneError> {
         let mut changing = RealInput::ALL.iter().filter(|input| self.rate(**input) != 0.0);
-        changing.try_for_each(|input| {
-            let value = self.real(*input) + self.rate(*input) * size;
-            check_range(input.variable(), value, false)
-        })
+        changing.try_for_each(|input| check_range(input.variable(), self.after(*input, size)))
     }
 
     /// Whether every value is in its range and every rate is finite.
     pub fn are_sound(&self) -> bool {
-        RealInput::ALL.iter().all(|input| {
-            check_range(input.variable(), self.real(*input), false).is_ok() && self.rate(*input).is_finite()
-        })
+        let mut inputs = RealInput::ALL.iter();
+        inputs.all(|input| check_range(input.variable(), self.real(*input)).is_ok() && self.rate(*input).is_finite())
     }
 
     /// Whether the inputs are constant over the step.
@@ -75,23 +85,5 @@ impl Inputs {
         for input in RealInput::ALL {
             *self.course_mut(*input).1 = 0.0;
         }
-    }
-
-    /// Those that move bodies.
-    pub const MOVING: [RealInput; INPUTS] =
-        [RealInput::SupportDisplacement, RealInput::SecondDisplacement, RealInput::PusherDisplacement];
-
-    /// Displacements of the bodies that inputs move after `size` seconds, m, in the order of [`Self::MOVING`].
-    pub fn displacements_after(&self, size: f64) -> Ways {
-        [
-            self.support_displacement + self.support_displacement_rate * size,
-            self.second_displacement + self.second_displacement_rate * size,
-            self.pusher_displacement + self.pusher_displacement_rate * size,
-        ]
-    }
-
-    /// Current after `size` seconds, A.
-    pub fn contact_current_after(&self, size: f64) -> f64 {
-        self.contact_current + self.contact_current_rate * size
     }
 }

@@ -88,10 +88,7 @@ impl Simulation {
     fn at_rest(scene: &Scene, initial: &Initial, start_time: f64) -> Result<Self, SceneError> {
         let kept = Kept::default();
         let model = Model::starting(scene, initial)?;
-        let needed = Workspace::size(&model);
-        if !memory::has(needed) {
-            return Err(SceneError::Memory(needed));
-        }
+        memory::check(Workspace::size(&model))?;
         Ok(Self { motion: Motion::at_rest(&model, start_time), workspace: Workspace::new(&model), model, _kept: kept })
     }
 

@@ -9,7 +9,7 @@ use relay_contact::error::SceneError;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::scene::file::SceneFile;
-use relay_contact::variables::{ExcitationKind, RealInput, RealParameter};
+use relay_contact::variables::{ExcitationKind, RealInput};
 use tempfile::TempDir;
 use testing::scenes;
 
@@ -40,8 +40,8 @@ fn dotted_and_nested_tables_name_the_same_variables() -> Result<(), SceneError> 
     let nested = "[parameters.beam]\nlength = 0.02\n[parameters.contact.moving]\nyoungsModulus = 9e10\n\
                   [parameters.effects]\nexcitation = \"Sine\"\n";
     let mut expected = Scene::default();
-    expected.set_real(RealParameter::BeamLength, 0.02)?;
-    expected.set_real(RealParameter::ContactMovingYoungsModulus, 9e10)?;
+    expected.beam.length = 0.02;
+    expected.contact.moving.youngs_modulus = 9e10;
     expected.effects.excitation = ExcitationKind::Sine;
     for text in [dotted, nested] {
         let file: SceneFile = format!("{HEAD}{text}").parse()?;

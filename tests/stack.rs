@@ -59,10 +59,12 @@ fn all() -> Vec<Scene> {
             for &(_, axial_force) in AxialForceKind::CHOICES {
                 for (index, spring) in (0..beside.len()).flat_map(|index| SPRINGS.map(|spring| (index, spring))) {
                     let mut scene = run();
-                    let set = |scene: &mut Scene, parameter, choice| scene.set_enumeration(parameter, choice).unwrap();
-                    set(&mut scene, EnumerationParameter::EffectsExcitation, excitation);
-                    set(&mut scene, EnumerationParameter::EffectsContactLaw, law);
-                    set(&mut scene, EnumerationParameter::EffectsAxialForce, axial_force);
+                    let mut set = |parameter: EnumerationParameter, choice: i32| {
+                        scene.set_number(parameter.variable(), choice.into()).unwrap();
+                    };
+                    set(EnumerationParameter::EffectsExcitation, excitation);
+                    set(EnumerationParameter::EffectsContactLaw, law);
+                    set(EnumerationParameter::EffectsAxialForce, axial_force);
                     with(&mut scene, StringParameter::BeamFile, spring);
                     beside[index](&mut scene);
                     if Simulation::new(&scene, &Inputs::default(), 0.0).is_ok() {

@@ -48,19 +48,20 @@ fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
         let Some(x) = *draw else { continue };
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 39")]
         let pick = |count: usize| (x * count as f64) as u8;
-        // A bound may be excluded: then the start value is kept.
-        let _ = match variable.group {
-            Group::RealParameter(parameter) => scene.set_real(parameter, within(variable, x)),
-            Group::IntegerParameter(parameter) => scene.set_integer(parameter, i32::from(pick(40))),
+        let value = match variable.group {
+            Group::RealParameter(_) => within(variable, x),
+            Group::IntegerParameter(_) => f64::from(pick(40)),
             Group::EnumerationParameter(parameter) => {
                 // With an armature the tolerance is not promised, which a remark says.
                 let promised = parameter != EnumerationParameter::EffectsPusher;
                 let choices = choices(parameter);
                 let choices = choices.get(..choices.len() - usize::from(!promised)).unwrap();
-                scene.set_enumeration(parameter, choices[usize::from(pick(choices.len()))].1)
+                f64::from(choices[usize::from(pick(choices.len()))].1)
             }
-            _ => Ok(()),
+            _ => continue,
         };
+        // A bound may be excluded: then the start value is kept.
+        let _ = scene.set_number(variable, value);
     }
     if scene.solver.tolerance > 0.0 {
         scene.solver.tolerance = scene.solver.tolerance.max(tightest);
@@ -114,12 +115,7 @@ fn ride(tightest: f64) -> impl Strategy<Value = Ride> {
 /// Summary of the ride: differences from the start values, and the motions.
 fn summary(ride: &Ride) -> String {
     let start = Scene::default();
-    let value = |scene: &Scene, variable: &Variable| match variable.group {
-        Group::RealParameter(parameter) => scene.real(parameter),
-        Group::IntegerParameter(parameter) => f64::from(scene.integer(parameter)),
-        Group::EnumerationParameter(parameter) => f64::from(scene.enumeration(parameter)),
-        _ => 0.0,
-    };
+    let value = |scene: &Scene, variable: &Variable| scene.number(variable).unwrap_or_default();
     let different: Vec<String> = VARIABLES
         .iter()
         .filter(|variable| value(&ride.scene, variable) != value(&start, variable))

@@ -69,7 +69,7 @@ fn follow(
             for ((rate, begin), end) in rates.iter_mut().zip(begin).zip(end) {
                 *rate = (end - begin) / length;
             }
-            instance.set(inputs, begin.iter().map(|value| Ok(Value::Real(*value))))?;
+            instance.set("Real", inputs, begin.iter().map(|value| Ok(Value::Number(*value))))?;
             instance.set_input_derivatives(inputs, &orders, &rates)?;
         }
         if let Err(failure) = instance.step(now, length) {

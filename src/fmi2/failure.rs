@@ -22,9 +22,9 @@ pub(super) enum Failure {
     /// Inconsistent parameters, found when an output was read in Initialization Mode.
     #[error("outputs cannot be computed yet: {0}; correct the parameters before initialisation ends")]
     Preview(SceneError),
-    /// Inconsistent parameters.
+    /// A scene that cannot be simulated.
     #[error(transparent)]
-    Initialisation(SceneError),
+    Scene(SceneError),
     #[error(transparent)]
     Step(StepError),
     #[error("{0}; reached by its derivative in this step")]
@@ -69,8 +69,6 @@ pub(super) enum Failure {
     Serialized(String),
     #[error("size = {size}: not allowed, the saved state has {needed} bytes")]
     Size { size: usize, needed: usize },
-    #[error("out of memory: {0} bytes are needed, and the system does not give them")]
-    Memory(usize),
     #[error("not supported, see {0} in modelDescription.xml")]
     Unsupported(&'static str),
     /// A panic caught at the C interface.

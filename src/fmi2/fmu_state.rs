@@ -21,11 +21,6 @@ use crate::memory;
 /// What a saved state with its motion takes of memory, and more, bytes.
 const ROOM: usize = size_of::<Saved>() + 2 * size_of::<Motion>();
 
-/// Refuses a snapshot for which there is no memory.
-fn check_memory() -> Result<(), Failure> {
-    memory::has(ROOM).then_some(()).ok_or(Failure::Memory(ROOM))
-}
-
 /// Stores a snapshot in the state that `FMUstate` points to or, if that is null, in a new one.
 ///
 /// # Safety
@@ -48,7 +43,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FM
     // SAFETY: the contract of the module.
     unsafe {
         call(c, states::GET_FMU_STATE, |instance| {
-            check_memory()?;
+            memory::check(ROOM).map_err(Failure::Scene)?;
             keep(instance, FMUstate, instance.snapshot())
         })
     }
@@ -132,7 +127,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     unsafe {
         call(c, states::DE_SERIALIZE_FMU_STATE, |instance| {
             let bytes = array(serializedState, size, "serializedState")?;
-            check_memory()?;
+            memory::check(ROOM).map_err(Failure::Scene)?;
             keep(instance, FMUstate, serial::from_bytes(bytemuck::cast_slice(bytes))?)
         })
     }

@@ -44,6 +44,7 @@ unsafe fn get<T>(
 unsafe fn set<'a, T: Copy>(
     c: fmi2Component,
     function: Function,
+    kind: &'static str,
     vr: *const fmi2ValueReference,
     nvr: size_t,
     value: *const T,
@@ -53,7 +54,7 @@ unsafe fn set<'a, T: Copy>(
     unsafe {
         call(c, function, |instance| {
             let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
-            instance.set(references, values.iter().map(|value| read(*value)))
+            instance.set(kind, references, values.iter().map(|value| read(*value)))
         })
     }
 }
@@ -120,7 +121,7 @@ pub unsafe extern "C" fn fmi2SetReal(
     value: *const fmi2Real,
 ) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_REAL, vr, nvr, value, |value| Ok(Value::Real(value))) }
+    unsafe { set(c, states::SET_REAL, "Real", vr, nvr, value, |value| Ok(Value::Number(value))) }
 }
 
 /// Sets integer and enumeration parameters. A value that is not allowed gives `fmi2Discard`, and none is set.
@@ -132,7 +133,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
     value: *const fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_INTEGER, vr, nvr, value, |value| Ok(Value::Integer(value))) }
+    unsafe { set(c, states::SET_INTEGER, "Integer", vr, nvr, value, |value| Ok(Value::Number(value.into()))) }
 }
 
 /// Sets Boolean parameters. Every value except `fmi2False` is true.
@@ -143,9 +144,9 @@ pub unsafe extern "C" fn fmi2SetBoolean(
     nvr: size_t,
     value: *const fmi2Boolean,
 ) -> fmi2Status {
-    let read = |value| Ok(Value::Boolean(value != fmi2False));
+    let read = |value| Ok(Value::Number(u8::from(value != fmi2False).into()));
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_BOOLEAN, vr, nvr, value, read) }
+    unsafe { set(c, states::SET_BOOLEAN, "Boolean", vr, nvr, value, read) }
 }
 
 /// Sets string parameters. A file that cannot be read or is wrong gives `fmi2Discard`, and none is set.
@@ -159,5 +160,5 @@ pub unsafe extern "C" fn fmi2SetString(
     // SAFETY: the contract of the module.
     let read = |value| unsafe { text(value, "value") }.map(Value::Text);
     // SAFETY: the contract of the module.
-    unsafe { set(c, states::SET_STRING, vr, nvr, value, read) }
+    unsafe { set(c, states::SET_STRING, "String", vr, nvr, value, read) }
 }

@@ -19,6 +19,7 @@ use crate::integrator::workspace::{Budget, Workspace};
 use crate::link::Ways;
 use crate::model::Model;
 use crate::state::State;
+use crate::variables::RealInput;
 
 /// How far to advance.
 #[derive(Debug)]
@@ -191,7 +192,7 @@ fn step_by<const EXTREMES: bool>(
         motion.extremes = extremes;
     }
     motion.time = until;
-    motion.current = inputs.contact_current_after(size);
+    motion.current = inputs.after(RealInput::ContactCurrent, size);
     motion.current_rate = inputs.contact_current_rate;
     Ok(())
 }

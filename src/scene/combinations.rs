@@ -1,8 +1,8 @@
 //! What parameters, each within its range, must be together.
 
 use crate::error::{SceneError, number};
-use crate::scene::Scene;
 use crate::scene::spring::{GivenMode, Shape};
+use crate::scene::{Scene, refused};
 use crate::variables::{
     AxialForceKind, ContactLawKind, EnumerationParameter, ExcitationKind, PusherKind, RealParameter, ResistanceKind,
 };
@@ -31,10 +31,10 @@ impl Scene {
         let contacts = [(effects.second_contact, SECOND), (effects.parallel_contact, PARALLEL)];
         let linear = matches!(effects.contact_law, ContactLawKind::Linearised | ContactLawKind::Bonded);
         let follows = effects.axial_force == AxialForceKind::FromDeflection;
-        refuse(linear && rubs, &law, TANGENTIAL, FRICTION)?;
+        exclude(linear && rubs, &law, TANGENTIAL, FRICTION)?;
         for (has, contact) in contacts {
-            refuse(linear && has, &law, POWERS, contact)?;
-            refuse(rubs && has, contact.0, "false", FRICTION)?;
+            exclude(linear && has, &law, POWERS, contact)?;
+            exclude(rubs && has, contact.0, "false", FRICTION)?;
         }
         let rigid = ("fixed.file", "no fixed.file");
         for (has, beside) in [
@@ -43,11 +43,11 @@ impl Scene {
             (pushed, (&pusher, "effects.pusher = None")),
             (self.fixed_spring.is_some(), rigid),
         ] {
-            refuse(follows && has, &axial, CONSTANT, beside)?;
+            exclude(follows && has, &axial, CONSTANT, beside)?;
         }
         let unknown = effects.resistance == ResistanceKind::None;
         let counted = effects.chatter && unknown;
-        refuse(counted, "effects.chatter = true", "false", NO_RESISTANCE)?;
+        exclude(counted, "effects.chatter = true", "false", NO_RESISTANCE)?;
         // What the fixed contact's spring need not know is where others touch the moving one.
         let springs = [("beam.file", &self.spring, true), ("fixed.file", &self.fixed_spring, false)];
         for (name, spring, moves) in springs {
@@ -59,14 +59,14 @@ impl Scene {
                 let beside = |instead| (modes.as_str(), instead);
                 let pressed = moves && effects.axial_force != AxialForceKind::None;
                 let geometry = beside("[[segment]], whose geometry an axial force needs");
-                refuse(pressed, &axial, "None", geometry)?;
+                exclude(pressed, &axial, "None", geometry)?;
                 let turned = beside("the rotation of the contact, rotation, in each [[mode]]");
-                refuse(rubs && lacks(|mode| mode.rotation), FRICTION.0, "None", turned)?;
+                exclude(rubs && lacks(|mode| mode.rotation), FRICTION.0, "None", turned)?;
                 let touched = beside("the displacement there, pusher, in each [[mode]]");
-                refuse(moves && pushed && lacks(|mode| mode.pusher), &pusher, "None", touched)?;
+                exclude(moves && pushed && lacks(|mode| mode.pusher), &pusher, "None", touched)?;
                 let closed = beside("the displacement there, parallel, in each [[mode]]");
                 let parallel = moves && effects.parallel_contact && lacks(|mode| mode.parallel);
-                refuse(parallel, PARALLEL.0, "false", closed)?;
+                exclude(parallel, PARALLEL.0, "false", closed)?;
             }
         }
         self.check_order()
@@ -94,13 +94,11 @@ impl Scene {
         } else {
             return Ok(());
         };
-        let (value, allowed) = (self.real(parameter), format!("allowed is {allowed}"));
-        let variable = parameter.variable();
-        Err(SceneError::out_of_range(variable.name, value, variable.unit, allowed))
+        Err(refused(parameter.variable(), self.real(parameter), &allowed))
     }
 }
 
-fn refuse(broken: bool, choice: &str, allowed: &'static str, (other, instead): Beside) -> Result<(), SceneError> {
+fn exclude(broken: bool, choice: &str, allowed: &'static str, (other, instead): Beside) -> Result<(), SceneError> {
     if !broken {
         return Ok(());
     }

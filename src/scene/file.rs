@@ -174,8 +174,8 @@ impl SceneFile {
 
     fn set_variable(&mut self, role: Role, name: &str, value: Value) -> Result<(), SceneError> {
         let variable = variable(role, name)?;
-        match variable.group {
-            Group::RealParameter(parameter) => self.scene.set_real(parameter, value.number(name)?),
+        let number = match variable.group {
+            Group::RealParameter(_) => value.number(name)?,
             Group::RealInput(input) => {
                 if matches!(role, Role::Input) && self.table.drives(input) {
                     return Err(SceneError::GivenTwice {
@@ -185,15 +185,13 @@ impl SceneFile {
                 }
                 self.inputs.set_real(input, value.number(name)?)?;
                 self.table.release(input);
-                Ok(())
+                return Ok(());
             }
-            Group::IntegerParameter(parameter) => self.scene.set_integer(parameter, value.whole(name)?),
-            Group::BooleanParameter(parameter) => {
-                value.boolean(name).map(|value| self.scene.set_boolean(parameter, value))
-            }
+            Group::IntegerParameter(_) => value.whole(name)?.into(),
+            Group::BooleanParameter(_) => u8::from(value.boolean(name)?).into(),
             Group::StringParameter(parameter) => {
                 let file = value.string(name, "a string")?;
-                self.scene.set_string(parameter, file, &self.folder)
+                return self.scene.set_string(parameter, file, &self.folder);
             }
             Group::EnumerationParameter(parameter) => {
                 let choice = value.string(name, "the name of a choice, as a string")?;
@@ -204,10 +202,11 @@ impl SceneFile {
                     value: choice.to_owned(),
                     allowed: list(choices.iter().map(|(label, _)| *label)),
                 })?;
-                self.scene.set_enumeration(parameter, *number)
+                f64::from(*number)
             }
-            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => Ok(()),
-        }
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => return Ok(()),
+        };
+        self.scene.set_number(variable, number)
     }
 }
 
@@ -216,7 +215,6 @@ fn positive(name: &'static str, value: Value) -> Result<f64, SceneError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
-        let allowed = "allowed is any positive finite number".to_owned();
-        Err(SceneError::out_of_range(name, value, "s", allowed))
+        Err(SceneError::out_of_range(name, value, "s", "any positive finite number"))
     }
 }

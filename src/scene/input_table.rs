@@ -66,14 +66,14 @@ impl InputTable {
                     let last = self.times.last().copied().unwrap_or(f64::NEG_INFINITY);
                     if !(time > last && time.is_finite()) {
                         let last = error::number(last);
-                        let allowed = format!("allowed is any finite number above that of the previous row, {last} s");
-                        return Err(SceneError::out_of_range("time", time, "s", allowed));
+                        let allowed = format!("any finite number above that of the previous row, {last} s");
+                        return Err(SceneError::out_of_range("time", time, "s", &allowed));
                     }
                     self.times.push(time);
                 }
                 Some(input) => {
                     let value = number(input.variable().name, field)?;
-                    check_range(input.variable(), value, false)?;
+                    check_range(input.variable(), value)?;
                     if let Some((_, values)) = rows.next() {
                         values.push(value);
                     }
@@ -114,8 +114,8 @@ impl InputTable {
     pub fn set(&self, inputs: &mut Inputs, time: f64, size: f64) -> Result<(), SceneError> {
         if let Some(distance) = self.passed_over(time, size) {
             let distance = error::number(distance);
-            let allowed = format!("allowed is the time between two rows of the input table, {distance} s");
-            return Err(SceneError::out_of_range("communicationStep", size, "s", allowed));
+            let allowed = format!("the time between two rows of the input table, {distance} s");
+            return Err(SceneError::out_of_range("communicationStep", size, "s", &allowed));
         }
         self.columns.iter().try_for_each(|(input, values)| {
             let value = self.value(values, time);

@@ -14,4 +14,4 @@ pub(crate) mod spring_file;
 mod values;
 
 pub use parameters::*;
-pub(crate) use values::check_range;
+pub(crate) use values::{check_range, refused};

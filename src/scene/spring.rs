@@ -149,8 +149,8 @@ impl Field {
         if min <= value && value <= max * (1.0 + ROUNDING) {
             return Ok(());
         }
-        let allowed = format!("allowed is {} to {}", number(min), number(max));
-        Err(SceneError::out_of_range(name, value, unit, allowed))
+        let allowed = format!("{} to {}", number(min), number(max));
+        Err(SceneError::out_of_range(name, value, unit, &allowed))
     }
 
     fn check_any(self, value: Option<f64>) -> Result<(), SceneError> {
@@ -318,5 +318,5 @@ pub(crate) fn count(name: &'static str, count: usize, least: usize) -> Result<()
         return Ok(());
     }
     let allowed = format!("allowed are {least} to {MOST_ENTRIES}");
-    Err(SceneError::out_of_range(name, count as f64, "entries", allowed))
+    Err(SceneError::OutOfRange { name, value: count as f64, unit: "entries", allowed })
 }

@@ -136,22 +136,14 @@ struct Known {
 
 impl Known {
     fn set(&mut self, variable: &Variable, value: f64) -> Result<(), SceneError> {
-        #[allow(clippy::cast_possible_truncation)] // whole numbers
-        let number = value as i32;
         match variable.group {
             Group::RealInput(input) => self.inputs.set_real(input, value),
-            Group::RealParameter(parameter) => self.scene.set_real(parameter, value),
-            Group::IntegerParameter(parameter) => self.scene.set_integer(parameter, number),
-            Group::EnumerationParameter(parameter) => self.scene.set_enumeration(parameter, number),
-            Group::BooleanParameter(parameter) => {
-                self.scene.set_boolean(parameter, value != 0.0);
-                Ok(())
-            }
             Group::StringParameter(parameter) => {
-                let file = ["", "tapered-cube.toml", "forked.toml"][usize::try_from(number).unwrap()];
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // whole numbers
+                let file = ["", "tapered-cube.toml", "forked.toml"][value as usize];
                 self.scene.set_string(parameter, file, Path::new("scenes/springs"))
             }
-            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => panic!("{}", variable.name),
+            _ => self.scene.set_number(variable, value),
         }
     }
 

@@ -143,7 +143,7 @@ impl Instance {
     }
 
     pub(super) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
-        self.prepare().map_err(Failure::Initialisation)?;
+        self.prepare().map_err(Failure::Scene)?;
         self.state = State::StepComplete;
         // Also of a state saved before: the run begins anew.
         self.told.of_error = false;
@@ -194,7 +194,7 @@ impl Instance {
             }
             (present, Some(SavedMotion { motion, initial })) => {
                 let resumed = Simulation::resume(&wanted, initial, motion);
-                *present = Some(Box::new(resumed.map_err(Failure::Initialisation)?));
+                *present = Some(Box::new(resumed.map_err(Failure::Scene)?));
             }
             (present, None) => *present = None,
         }

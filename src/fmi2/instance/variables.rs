@@ -9,23 +9,11 @@ use crate::fmi2::states::State;
 use crate::simulation::Simulation;
 use crate::variables::{Group, Variable};
 
+/// A value to set: a number, true as 1, or a text.
 #[derive(Clone, Copy)]
 pub(in crate::fmi2) enum Value<'a> {
-    Real(f64),
-    Integer(i32),
-    Boolean(bool),
+    Number(f64),
     Text(&'a CStr),
-}
-
-impl Value<'_> {
-    fn kind(self) -> &'static str {
-        match self {
-            Self::Real(_) => "Real",
-            Self::Integer(_) => "Integer",
-            Self::Boolean(_) => "Boolean",
-            Self::Text(_) => "String",
-        }
-    }
 }
 
 impl Instance {
@@ -52,44 +40,33 @@ impl Instance {
 
     /// The value of a variable as a real: a choice by its number, true as 1.
     pub(in crate::fmi2) fn number(&mut self, variable: &Variable) -> Result<f64, Failure> {
-        Ok(match variable.group {
-            Group::RealInput(input) => self.inputs.real(input),
-            Group::RealParameter(parameter) => self.scene.real(parameter),
-            Group::IntegerParameter(parameter) => self.scene.integer(parameter).into(),
-            Group::EnumerationParameter(parameter) => self.scene.enumeration(parameter).into(),
-            Group::BooleanParameter(parameter) => u8::from(self.scene.boolean(parameter)).into(),
-            Group::StringParameter(_) => return Err(wrong_type("Real", variable)),
-            _ => self.computed(variable)?.output(variable).unwrap_or_default(),
+        Ok(match (variable.group, self.scene.number(variable)) {
+            (Group::RealInput(input), _) => self.inputs.real(input),
+            (Group::StringParameter(_), _) => return Err(wrong_type("Real", variable)),
+            (_, Some(parameter)) => parameter,
+            (_, None) => self.computed(variable)?.output(variable).unwrap_or_default(),
         })
     }
 
-    /// Sets inputs and parameters; all of them or, on an error, none.
+    /// Sets inputs and parameters of a type; all of them or, on an error, none.
     pub(in crate::fmi2) fn set<'a>(
         &mut self,
+        kind: &'static str,
         references: &[u32],
         values: impl Iterator<Item = Result<Value<'a>, Failure>>,
     ) -> Result<(), Failure> {
         let (mut scene, mut inputs) = (self.scene.clone(), self.inputs);
         for (&reference, value) in references.iter().zip(values) {
             let value = value?;
-            let variable = self.typed(value.kind(), reference)?;
+            let variable = self.typed(kind, reference)?;
             self.check_settable(variable)?;
-            let value = discrete(variable, value).map_err(Failure::Value)?;
             let set = match (variable.group, value) {
-                (Group::RealInput(input), Value::Real(value)) => inputs.set_real(input, value),
-                (Group::RealParameter(parameter), Value::Real(value)) => scene.set_real(parameter, value),
-                (Group::IntegerParameter(parameter), Value::Integer(value)) => scene.set_integer(parameter, value),
-                (Group::EnumerationParameter(parameter), Value::Integer(value)) => {
-                    scene.set_enumeration(parameter, value)
-                }
-                (Group::BooleanParameter(parameter), Value::Boolean(value)) => {
-                    scene.set_boolean(parameter, value);
-                    Ok(())
-                }
+                (Group::RealInput(input), Value::Number(value)) => inputs.set_real(input, value),
                 (Group::StringParameter(parameter), Value::Text(value)) => {
                     path_text(variable, value).and_then(|path| self.set_string(&mut scene, parameter, path))
                 }
-                _ => return Err(wrong_type(value.kind(), variable)),
+                (_, Value::Number(value)) => scene.set_number(variable, value),
+                (_, Value::Text(_)) => return Err(wrong_type(kind, variable)),
             };
             set.map_err(Failure::Value)?;
         }
@@ -178,22 +155,6 @@ impl Instance {
         first_order(variable, order)?;
         Ok(rate.unwrap_or_default())
     }
-}
-
-/// A Real that stands for an integer, a choice or a Boolean as that: by its text, which fractions and what is too large do not survive.
-fn discrete<'a>(variable: &Variable, value: Value<'a>) -> Result<Value<'a>, SceneError> {
-    let Value::Real(real) = value else { return Ok(value) };
-    let whole = || real.to_string().parse().ok();
-    let (found, allowed) = match variable.group {
-        Group::IntegerParameter(_) | Group::EnumerationParameter(_) => (whole().map(Value::Integer), "a whole number"),
-        Group::BooleanParameter(_) => {
-            let either = whole().filter(|whole| (0..=1).contains(whole));
-            (either.map(|whole| Value::Boolean(whole == 1)), "0 or 1")
-        }
-        _ => return Ok(value),
-    };
-    let allowed = format!("allowed is {allowed}");
-    found.ok_or_else(|| SceneError::out_of_range(variable.name, real, variable.unit, allowed))
 }
 
 /// A path in UTF-8 of a length that systems allow.
