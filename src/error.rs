@@ -1,8 +1,8 @@
 //! Errors of setting up a scene and of integrating it. Every message names the variable, its value and what is
 //! allowed, so that it can be shown to the user unchanged.
 
-use std::any::Any;
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A scene that cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -221,8 +221,11 @@ pub enum StepErrorCause {
     NotFinite,
 }
 
-pub(crate) fn panic_text(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
-    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
-    text.unwrap_or_else(|| "panic".to_owned())
+/// What `body` returns, or the text of its panic.
+pub(crate) fn caught<T>(body: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(body)).map_err(|panic| {
+        let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        text.unwrap_or_else(|| "panic".to_owned())
+    })
 }

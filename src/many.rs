@@ -1,12 +1,11 @@
 //! Many scenes at once, on all cores of a machine.
 
 use std::num::NonZero;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::thread;
 
-use crate::error::{SceneError, StepError, panic_text};
+use crate::error::{SceneError, StepError, caught};
 use crate::scene::file::SceneFile;
 use crate::simulation::{Kept, Simulation};
 
@@ -84,8 +83,8 @@ fn side_by_side<T: Sync, R: Send + Sync>(
             let number = next.fetch_add(1, Ordering::Relaxed);
             items.get(number).zip(rows.get(number))
         } {
-            let done = catch_unwind(AssertUnwindSafe(|| work(item)));
-            let _ = row.set(done.unwrap_or_else(|panic| Err(RunError::Panic(panic_text(panic.as_ref())))));
+            let done = caught(|| work(item));
+            let _ = row.set(done.unwrap_or_else(|panic| Err(RunError::Panic(panic))));
             let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
             told.0 += 1;
             let count = told.0;

@@ -92,9 +92,6 @@ pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
 }
 
 /// Returns a status value, or `fmi2Discard` if there is none.
-///
-/// # Safety
-/// The contract of the module.
 unsafe fn status<T>(
     c: fmi2Component,
     function: Function,
@@ -102,7 +99,7 @@ unsafe fn status<T>(
     value: *mut T,
     answer: impl Fn(&Instance) -> Option<T>,
 ) -> fmi2Status {
-    // SAFETY: passed on to the caller.
+    // SAFETY: the contract of the module.
     unsafe {
         call(c, function, |instance| {
             let place = place(value, "value")?;

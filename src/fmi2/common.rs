@@ -3,7 +3,6 @@
 #![allow(unused_variables)]
 
 use std::ffi::CStr;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::ptr;
 
@@ -20,7 +19,7 @@ use super::types::{
     fmi2Boolean, fmi2CallbackFunctions, fmi2CoSimulation, fmi2Component, fmi2Error, fmi2False, fmi2Real, fmi2Status,
     fmi2String, fmi2Type,
 };
-use crate::error::panic_text;
+use crate::error::caught;
 use crate::variables::{GUID, PLAIN_GUID};
 
 /// The platform types the functions use: "default".
@@ -84,17 +83,15 @@ pub unsafe extern "C" fn fmi2Instantiate(
         logger(false).log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
         ptr::null_mut()
     };
-    let made = with_default(|| {
-        catch_unwind(AssertUnwindSafe(|| {
-            let made = identity(name, fmuType, guid, resources.as_deref()).and_then(|identity| {
-                let step_finished = (functions.stepFinished, functions.componentEnvironment);
-                let instance = Instance::new(logger(loggingOn != fmi2False), step_finished, resources, identity);
-                instance.map_err(|error| error.to_string())
-            });
-            made.map_or_else(|reason| refuse(&reason), hand_out)
-        }))
-    });
-    made.unwrap_or_else(|panic| refuse(&Failure::Panic(panic_text(panic.as_ref())).to_string()))
+    let make = || {
+        let identity = identity(name, fmuType, guid, resources.as_deref())?;
+        let step_finished = (functions.stepFinished, functions.componentEnvironment);
+        let instance = Instance::new(logger(loggingOn != fmi2False), step_finished, resources, identity);
+        instance.map_err(|error| error.to_string())
+    };
+    let made = with_default(|| caught(make));
+    let made = made.unwrap_or_else(|panic| Err(Failure::Panic(panic).to_string()));
+    made.map_or_else(|reason| refuse(&reason), hand_out)
 }
 
 /// What is to be instantiated, or why no instance can be created.

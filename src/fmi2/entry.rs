@@ -4,7 +4,6 @@
 use std::cell::UnsafeCell;
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::environment::with_default;
@@ -12,7 +11,7 @@ use super::failure::Failure;
 use super::instance::Instance;
 use super::states::Function;
 use super::types::{fmi2Component, fmi2Error, fmi2OK, fmi2Status, fmi2String};
-use crate::error::panic_text;
+use crate::error::caught;
 
 /// What a component points to. The guard comes first: it distinguishes an instance from other memory, and rejects a
 /// second call during a call, from another thread or from the importer's log callback.
@@ -41,7 +40,7 @@ pub(super) unsafe fn take_back(component: fmi2Component) {
         // SAFETY: the guard held IDLE, so the memory came from `hand_out` and nobody else uses it.
         let handle = unsafe { Box::from_raw(handle.cast_mut()) };
         // A panic must not reach C, and no instance is left to report it.
-        let _ = catch_unwind(AssertUnwindSafe(move || drop(handle)));
+        let _ = caught(move || drop(handle));
     }
 }
 
@@ -74,10 +73,10 @@ pub(super) unsafe fn call(
     let (guard, instance) = unsafe { (&(*handle).guard, &mut *(*handle).instance.get()) };
     let status = with_default(|| {
         let result = if function.allowed.contains(&instance.state) {
-            catch_unwind(AssertUnwindSafe(|| body(instance))).unwrap_or_else(|panic| {
+            caught(|| body(instance)).unwrap_or_else(|panic| {
                 // It may be inconsistent.
                 instance.simulation = None;
-                Err(Failure::Panic(panic_text(panic.as_ref())))
+                Err(Failure::Panic(panic))
             })
         } else {
             Err(Failure::CallOrder { function, state: instance.state })

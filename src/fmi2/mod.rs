@@ -21,7 +21,7 @@ mod report;
 mod resources;
 mod saved;
 mod serial;
-pub mod states;
+mod states;
 mod types;
 mod values;
 

@@ -1,7 +1,6 @@
 //! The saved states of an instance: each on the heap until it is freed, at the latest with the instance.
 
 use std::collections::BTreeSet;
-use std::ptr;
 
 use super::failure::Failure;
 use super::instance::snapshot::Snapshot;
@@ -25,16 +24,15 @@ impl Drop for Saved {
 const SAVED: u64 = u64::from_be_bytes(*b"relay\0st");
 const FREED: u64 = u64::from_be_bytes(*b"relay\0fs");
 
-/// The addresses of the saved states of an instance. Dropping it frees their memory.
+/// The saved states of an instance. Dropping it frees their memory.
 #[derive(Debug, Default)]
-pub(super) struct SavedStates(BTreeSet<usize>);
+pub(super) struct SavedStates(BTreeSet<*mut Saved>);
 
 impl SavedStates {
     /// Moves a snapshot to the heap and returns a pointer for C.
     pub(super) fn hand_out(&mut self, snapshot: Snapshot) -> fmi2FMUstate {
-        let guard = SAVED;
-        let state = Box::into_raw(Box::new(Saved { guard, snapshot }));
-        self.0.insert(state.expose_provenance());
+        let state = Box::into_raw(Box::new(Saved { guard: SAVED, snapshot }));
+        self.0.insert(state);
         state.cast()
     }
 
@@ -45,9 +43,9 @@ impl SavedStates {
     pub(super) unsafe fn free(&mut self, state: fmi2FMUstate) -> Result<(), Failure> {
         // SAFETY: passed on to the caller.
         let saved = unsafe { saved(state) }?;
-        if self.0.remove(&state.addr()) {
+        if let Some(own) = self.0.take(&state.cast()) {
             // SAFETY: the memory came from `hand_out`, and its address is not kept any more.
-            drop(unsafe { Box::from_raw(saved) });
+            drop(unsafe { Box::from_raw(own) });
         } else {
             saved.guard = FREED;
         }
@@ -57,9 +55,9 @@ impl SavedStates {
 
 impl Drop for SavedStates {
     fn drop(&mut self) {
-        for address in std::mem::take(&mut self.0) {
+        while let Some(own) = self.0.pop_first() {
             // SAFETY: as in `free`.
-            drop(unsafe { Box::from_raw(ptr::with_exposed_provenance_mut::<Saved>(address)) });
+            drop(unsafe { Box::from_raw(own) });
         }
     }
 }

@@ -5,9 +5,13 @@
 //! an error of that call alone); the status functions also work in the state error, so that the last successful time can be read after a
 //! failed step; the directional derivatives, which the description declares unsupported, report this in every state.
 
+use serde::{Deserialize, Serialize};
+
+use State::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
+
 /// State in the life cycle of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum State {
+pub(super) enum State {
     /// Instantiated or reset; the experiment can be set up.
     Instantiated,
     /// Between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`.
@@ -20,15 +24,9 @@ pub enum State {
     Error,
 }
 
-use State::{Error, InitializationMode, Instantiated, StepComplete, Terminated};
-use serde::{Deserialize, Serialize};
-
 impl State {
-    /// Every state.
-    pub const ALL: &[Self] = &[Instantiated, InitializationMode, StepComplete, Terminated, Error];
-
     /// The name of the state in messages.
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Instantiated => "instantiated",
             InitializationMode => "Initialization Mode",
@@ -40,57 +38,48 @@ impl State {
 }
 
 /// A function of an instance, with the states it may be called in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Function {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Function {
     /// Name in C.
-    pub name: &'static str,
-    /// The states in which the call is allowed.
-    pub allowed: &'static [State],
+    pub(super) name: &'static str,
+    pub(super) allowed: &'static [State],
 }
 
-const ANY: &[State] = State::ALL;
+const fn function(name: &'static str, allowed: &'static [State]) -> Function {
+    Function { name, allowed }
+}
+
+const ANY: &[State] = &[Instantiated, InitializationMode, StepComplete, Terminated, Error];
 const SETTABLE: &[State] = &[Instantiated, InitializationMode, StepComplete];
 const STATUS: &[State] = &[StepComplete, Terminated, Error];
 
-/// Makes of each function a constant, and a table of all.
-macro_rules! functions {
-    ($($constant:ident = $name:literal, $allowed:expr;)*) => {
-        $(pub(super) const $constant: Function = Function { name: $name, allowed: $allowed };)*
-
-        /// Every function of an instance except `fmi2FreeInstance`, which is always allowed and has no status.
-        pub const TABLE: &[Function] = &[$($constant),*];
-    };
-}
-
-functions! {
-    SET_DEBUG_LOGGING = "fmi2SetDebugLogging", ANY;
-    SETUP_EXPERIMENT = "fmi2SetupExperiment", &[Instantiated];
-    ENTER_INITIALIZATION_MODE = "fmi2EnterInitializationMode", &[Instantiated];
-    EXIT_INITIALIZATION_MODE = "fmi2ExitInitializationMode", &[InitializationMode];
-    TERMINATE = "fmi2Terminate", &[StepComplete];
-    RESET = "fmi2Reset", ANY;
-    GET_REAL = "fmi2GetReal", ANY;
-    GET_INTEGER = "fmi2GetInteger", ANY;
-    GET_BOOLEAN = "fmi2GetBoolean", ANY;
-    GET_STRING = "fmi2GetString", ANY;
-    SET_REAL = "fmi2SetReal", SETTABLE;
-    SET_INTEGER = "fmi2SetInteger", SETTABLE;
-    SET_BOOLEAN = "fmi2SetBoolean", SETTABLE;
-    SET_STRING = "fmi2SetString", SETTABLE;
-    GET_FMU_STATE = "fmi2GetFMUstate", ANY;
-    SET_FMU_STATE = "fmi2SetFMUstate", ANY;
-    FREE_FMU_STATE = "fmi2FreeFMUstate", ANY;
-    SERIALIZED_FMU_STATE_SIZE = "fmi2SerializedFMUstateSize", ANY;
-    SERIALIZE_FMU_STATE = "fmi2SerializeFMUstate", ANY;
-    DE_SERIALIZE_FMU_STATE = "fmi2DeSerializeFMUstate", ANY;
-    GET_DIRECTIONAL_DERIVATIVE = "fmi2GetDirectionalDerivative", ANY;
-    SET_REAL_INPUT_DERIVATIVES = "fmi2SetRealInputDerivatives", SETTABLE;
-    GET_REAL_OUTPUT_DERIVATIVES = "fmi2GetRealOutputDerivatives", STATUS;
-    DO_STEP = "fmi2DoStep", &[StepComplete];
-    CANCEL_STEP = "fmi2CancelStep", &[];
-    GET_STATUS = "fmi2GetStatus", STATUS;
-    GET_REAL_STATUS = "fmi2GetRealStatus", STATUS;
-    GET_INTEGER_STATUS = "fmi2GetIntegerStatus", STATUS;
-    GET_BOOLEAN_STATUS = "fmi2GetBooleanStatus", STATUS;
-    GET_STRING_STATUS = "fmi2GetStringStatus", STATUS;
-}
+pub(super) const SET_DEBUG_LOGGING: Function = function("fmi2SetDebugLogging", ANY);
+pub(super) const SETUP_EXPERIMENT: Function = function("fmi2SetupExperiment", &[Instantiated]);
+pub(super) const ENTER_INITIALIZATION_MODE: Function = function("fmi2EnterInitializationMode", &[Instantiated]);
+pub(super) const EXIT_INITIALIZATION_MODE: Function = function("fmi2ExitInitializationMode", &[InitializationMode]);
+pub(super) const TERMINATE: Function = function("fmi2Terminate", &[StepComplete]);
+pub(super) const RESET: Function = function("fmi2Reset", ANY);
+pub(super) const GET_REAL: Function = function("fmi2GetReal", ANY);
+pub(super) const GET_INTEGER: Function = function("fmi2GetInteger", ANY);
+pub(super) const GET_BOOLEAN: Function = function("fmi2GetBoolean", ANY);
+pub(super) const GET_STRING: Function = function("fmi2GetString", ANY);
+pub(super) const SET_REAL: Function = function("fmi2SetReal", SETTABLE);
+pub(super) const SET_INTEGER: Function = function("fmi2SetInteger", SETTABLE);
+pub(super) const SET_BOOLEAN: Function = function("fmi2SetBoolean", SETTABLE);
+pub(super) const SET_STRING: Function = function("fmi2SetString", SETTABLE);
+pub(super) const GET_FMU_STATE: Function = function("fmi2GetFMUstate", ANY);
+pub(super) const SET_FMU_STATE: Function = function("fmi2SetFMUstate", ANY);
+pub(super) const FREE_FMU_STATE: Function = function("fmi2FreeFMUstate", ANY);
+pub(super) const SERIALIZED_FMU_STATE_SIZE: Function = function("fmi2SerializedFMUstateSize", ANY);
+pub(super) const SERIALIZE_FMU_STATE: Function = function("fmi2SerializeFMUstate", ANY);
+pub(super) const DE_SERIALIZE_FMU_STATE: Function = function("fmi2DeSerializeFMUstate", ANY);
+pub(super) const GET_DIRECTIONAL_DERIVATIVE: Function = function("fmi2GetDirectionalDerivative", ANY);
+pub(super) const SET_REAL_INPUT_DERIVATIVES: Function = function("fmi2SetRealInputDerivatives", SETTABLE);
+pub(super) const GET_REAL_OUTPUT_DERIVATIVES: Function = function("fmi2GetRealOutputDerivatives", STATUS);
+pub(super) const DO_STEP: Function = function("fmi2DoStep", &[StepComplete]);
+pub(super) const CANCEL_STEP: Function = function("fmi2CancelStep", &[]);
+pub(super) const GET_STATUS: Function = function("fmi2GetStatus", STATUS);
+pub(super) const GET_REAL_STATUS: Function = function("fmi2GetRealStatus", STATUS);
+pub(super) const GET_INTEGER_STATUS: Function = function("fmi2GetIntegerStatus", STATUS);
+pub(super) const GET_BOOLEAN_STATUS: Function = function("fmi2GetBooleanStatus", STATUS);
+pub(super) const GET_STRING_STATUS: Function = function("fmi2GetStringStatus", STATUS);

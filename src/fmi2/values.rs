@@ -10,13 +10,10 @@ use super::instance::Instance;
 use super::instance::variables::Value;
 use super::states::{self, Function};
 use super::types::{
-    fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2True, fmi2ValueReference,
+    fmi2Boolean, fmi2Component, fmi2False, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
 };
 
 /// Reads one value for each reference.
-///
-/// # Safety
-/// The contract of the module.
 unsafe fn get<T>(
     c: fmi2Component,
     function: Function,
@@ -25,7 +22,7 @@ unsafe fn get<T>(
     value: *mut T,
     read: impl Fn(&mut Instance, u32) -> Result<T, Failure>,
 ) -> fmi2Status {
-    // SAFETY: passed on to the caller.
+    // SAFETY: the contract of the module.
     unsafe {
         call(c, function, |instance| {
             let (references, values) = (array(vr, nvr, "vr")?, array_mut(value, nvr, "value")?);
@@ -38,9 +35,6 @@ unsafe fn get<T>(
 }
 
 /// Sets the values of the references, all or none.
-///
-/// # Safety
-/// The contract of the module.
 unsafe fn set<'a, T: Copy>(
     c: fmi2Component,
     function: Function,
@@ -50,7 +44,7 @@ unsafe fn set<'a, T: Copy>(
     value: *const T,
     read: impl Fn(T) -> Result<Value<'a>, Failure>,
 ) -> fmi2Status {
-    // SAFETY: passed on to the caller.
+    // SAFETY: the contract of the module.
     unsafe {
         call(c, function, |instance| {
             let (references, values) = (array(vr, nvr, "vr")?, array(value, nvr, "value")?);
@@ -67,8 +61,9 @@ pub unsafe extern "C" fn fmi2GetReal(
     nvr: size_t,
     value: *mut fmi2Real,
 ) -> fmi2Status {
+    let read = |instance: &mut Instance, reference| instance.value("Real", reference);
     // SAFETY: the contract of the module.
-    unsafe { get(c, states::GET_REAL, vr, nvr, value, Instance::real) }
+    unsafe { get(c, states::GET_REAL, vr, nvr, value, read) }
 }
 
 /// Reads integer and enumeration variables.
@@ -79,8 +74,10 @@ pub unsafe extern "C" fn fmi2GetInteger(
     nvr: size_t,
     value: *mut fmi2Integer,
 ) -> fmi2Status {
+    #[expect(clippy::cast_possible_truncation, reason = "it was an integer")]
+    let read = |instance: &mut Instance, reference| Ok(instance.value("Integer", reference)? as fmi2Integer);
     // SAFETY: the contract of the module.
-    unsafe { get(c, states::GET_INTEGER, vr, nvr, value, Instance::integer) }
+    unsafe { get(c, states::GET_INTEGER, vr, nvr, value, read) }
 }
 
 /// Reads Boolean variables.
@@ -91,10 +88,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
     nvr: size_t,
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
-    let read = |instance: &mut Instance, reference| {
-        let value = instance.boolean(reference)?;
-        Ok(if value { fmi2True } else { fmi2False })
-    };
+    let read = |instance: &mut Instance, reference| Ok((instance.value("Boolean", reference)? != 0.0).into());
     // SAFETY: the contract of the module.
     unsafe { get(c, states::GET_BOOLEAN, vr, nvr, value, read) }
 }

@@ -25,17 +25,9 @@ impl Instance {
         self.simulation.as_deref().ok_or(Failure::NotComputed { name: variable.name, state: self.state })
     }
 
-    pub(in crate::fmi2) fn real(&mut self, reference: u32) -> Result<f64, Failure> {
-        self.number(self.typed("Real", reference)?)
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "it was an integer")]
-    pub(in crate::fmi2) fn integer(&mut self, reference: u32) -> Result<i32, Failure> {
-        self.number(self.typed("Integer", reference)?).map(|value| value as i32)
-    }
-
-    pub(in crate::fmi2) fn boolean(&mut self, reference: u32) -> Result<bool, Failure> {
-        self.number(self.typed("Boolean", reference)?).map(|value| value != 0.0)
+    /// The value of a variable of a type as a real.
+    pub(in crate::fmi2) fn value(&mut self, kind: &'static str, reference: u32) -> Result<f64, Failure> {
+        self.number(self.typed(kind, reference)?)
     }
 
     /// The value of a variable as a real: a choice by its number, true as 1.
