@@ -83,13 +83,10 @@ mod tests {
     }
 
     #[test]
-    fn the_derivative_of_the_force_is_its_slope() {
+    fn the_force_is_the_derivative_of_the_energy() {
         let magnet = Magnet { hold: 4.0, constant: 1e-4 };
         for gap in [1e-6, 1e-4, 1e-3] {
             let step = 1e-4 * gap;
-            let [below, above] = [gap - step, gap + step].map(|gap| magnet.force(gap, 0.7).0);
-            let slope = (above - below) / (2.0 * step);
-            assert!((magnet.force(gap, 0.7).1 - slope).abs() < 1e-6 * slope.abs());
             let [below, above] = [gap - step, gap + step].map(|gap| magnet.energy(gap, 0.7));
             let force = (above - below) / (2.0 * step);
             assert!((magnet.force(gap, 0.7).0 - force).abs() < 1e-6 * force);

@@ -84,7 +84,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
         ptr::null_mut()
     };
     let make = || {
-        let identity = identity(name, fmuType, guid, resources.as_deref())?;
+        name.ok_or("instanceName is null or empty")?;
+        let identity = identity(fmuType, guid, resources.as_deref())?;
         let step_finished = (functions.stepFinished, functions.componentEnvironment);
         let instance = Instance::new(logger(loggingOn != fmi2False), step_finished, resources, identity);
         instance.map_err(|error| error.to_string())
@@ -95,18 +96,9 @@ pub unsafe extern "C" fn fmi2Instantiate(
 }
 
 /// What is to be instantiated, or why no instance can be created.
-fn identity(
-    name: Option<&CStr>,
-    kind: fmi2Type,
-    guid: Result<&CStr, Failure>,
-    resources: Option<&Path>,
-) -> Result<Identity, String> {
-    if name.is_none() {
-        return Err("instanceName is null or empty".to_owned());
-    }
+fn identity(kind: fmi2Type, guid: Result<&CStr, Failure>, resources: Option<&Path>) -> Result<Identity, String> {
     if kind != fmi2CoSimulation {
-        let allowed = "allowed is 1 (fmi2CoSimulation)";
-        return Err(format!("fmuType = {kind}: not allowed, {allowed}"));
+        return Err(format!("fmuType = {kind}: not allowed, allowed is 1 (fmi2CoSimulation)"));
     }
     let guid = guid.map_err(|failure| failure.to_string())?.to_string_lossy();
     Identity::of(&guid, resources).ok_or_else(|| {

@@ -1,6 +1,4 @@
 //! Many communication steps in one call, for languages in which a call takes longer than a step. Not a function of FMI.
-// Names as in C; unused arguments keep theirs for the header.
-#![allow(unused_variables)]
 
 use std::mem::MaybeUninit;
 

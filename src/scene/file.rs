@@ -167,7 +167,7 @@ impl SceneFile {
         let mut named = table.values().map(|(key, value)| (format!("{prefix}{key}"), value));
         named.try_for_each(|(name, value)| match value.table(&name, "a table") {
             Ok(table) => self.apply(role, &format!("{name}."), &table),
-            Err(_) if matches!(role, Role::Input) && name == FILE => Ok(()),
+            Err(_) if role == Role::Input && name == FILE => Ok(()),
             Err(_) => value.at(self.set_variable(role, &name, value)),
         })
     }
@@ -177,7 +177,7 @@ impl SceneFile {
         let number = match variable.group {
             Group::RealParameter(_) => value.number(name)?,
             Group::RealInput(input) => {
-                if matches!(role, Role::Input) && self.table.drives(input) {
+                if role == Role::Input && self.table.drives(input) {
                     return Err(SceneError::GivenTwice {
                         name: name.to_owned(),
                         allowed: "either a value here or a column of the file",

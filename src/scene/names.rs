@@ -6,7 +6,7 @@ use crate::error::SceneError;
 use crate::variables::{Group, VARIABLES, Variable};
 
 /// The kind of variable allowed at a position of the file.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     Parameter,
     Input,
@@ -18,7 +18,7 @@ impl Role {
     fn covers(self, variable: &Variable) -> bool {
         match variable.group {
             Group::RealInput(_) => matches!(self, Self::Input | Self::Settable),
-            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => matches!(self, Self::Output),
+            Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => self == Self::Output,
             _ => matches!(self, Self::Parameter | Self::Settable),
         }
     }
