@@ -100,10 +100,7 @@ impl Preload {
             // Where the spring has no equilibrium under the pusher, it says why.
             at(scene.armature.rest_position)?;
             at(scene.armature.core_position)?;
-            return Err(SceneError::NotFinite {
-                name: RealOutput::ArmatureDisplacement.variable().name,
-                value: f64::NAN,
-            });
+            return Err(not_finite(RealOutput::ArmatureDisplacement, f64::NAN));
         };
         Ok(Self { armature, ..at(armature.place)? })
     }
@@ -224,7 +221,7 @@ impl<'a> Pressed<'a> {
             self.with(force).map_or(f64::MAX, |with| d - self.parallel_indentation(&with, force))
         };
         let Some(indentation) = roots::bracketed(excess, 0.0, open) else {
-            return Err(SceneError::NotFinite { name: RealOutput::ParallelForce.variable().name, value: excess(open) });
+            return Err(not_finite(RealOutput::ParallelForce, excess(open)));
         };
         let force = law.elastic_force(indentation);
         Ok(Preload { parallel_force: force, parallel_indentation: indentation, ..self.with(force)? })
@@ -261,10 +258,7 @@ impl<'a> Pressed<'a> {
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
             let buckled = self.check_buckling(self.axial(total_overtravel)).err();
-            return Err(buckled.unwrap_or(SceneError::NotFinite {
-                name: RealOutput::PreloadIndentation.variable().name,
-                value: residual(0.0),
-            }));
+            return Err(buckled.unwrap_or(not_finite(RealOutput::PreloadIndentation, residual(0.0))));
         };
         let (force, deflection) = (law.elastic_force(indentation), deflection(indentation));
         let axial_force = self.axial(deflection);
@@ -312,4 +306,8 @@ fn free_deflection(loaded: impl Fn(f64) -> f64, axial: &impl Fn(f64) -> f64) -> 
         y = next;
     }
     y
+}
+
+fn not_finite(output: RealOutput, value: f64) -> SceneError {
+    SceneError::NotFinite { name: output.variable().name, value }
 }

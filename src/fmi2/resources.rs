@@ -18,43 +18,32 @@ pub(super) struct Identity {
 impl Identity {
     /// None if the GUID is neither of this library's nor that of one of these with a spring file in the folder.
     pub(super) fn of(guid: &str, resources: Option<&Path>) -> Option<Self> {
-        let known = |spring: Option<(String, String)>| {
-            let is_own = |own: &str| match &spring {
-                None => guid == own,
-                Some((name, text)) => guid == guid_carrying(own, name, text),
-            };
-            let plain = is_own(PLAIN_GUID);
-            if !plain && !is_own(GUID) {
-                return None;
-            }
-            let spring = spring.map(|(name, _)| name);
-            Some(Self { plain, spring })
-        };
-        let files = || fs::read_dir(resources?).ok();
-        let spring = |file: fs::DirEntry| {
+        let own = [(GUID, false), (PLAIN_GUID, true)];
+        if let Some((_, plain)) = own.into_iter().find(|(own, _)| guid == *own) {
+            return Some(Self { plain, spring: None });
+        }
+        fs::read_dir(resources?).ok()?.flatten().find_map(|file| {
             let name = file.file_name().into_string().ok()?;
-            known(Some((name, spring_file::text(&file.path()).ok()?)))
-        };
-        known(None).or_else(|| files()?.flatten().find_map(spring))
+            let text = spring_file::text(&file.path()).ok()?;
+            let (_, plain) = own.into_iter().find(|(own, _)| guid == guid_carrying(own, &name, &text))?;
+            Some(Self { plain, spring: Some(name) })
+        })
     }
 }
 
 /// The folder of a `file:` URI, or of a path, which some importers pass instead; none for another URI.
 pub(super) fn folder(location: &str) -> Option<PathBuf> {
-    let path = match location.split_once(':') {
-        // A single letter is a drive.
-        Some((scheme, rest)) if scheme.len() > 1 => {
-            if !scheme.eq_ignore_ascii_case("file") {
-                return None;
-            }
+    // A single letter is a drive.
+    let uri = location.split_once(':').filter(|(scheme, _)| scheme.len() > 1);
+    let path = match uri {
+        None => location.to_owned(),
+        Some((scheme, rest)) if scheme.eq_ignore_ascii_case("file") => {
             let path = match rest.strip_prefix("//") {
                 None => rest,
                 Some(rest) => {
                     let (host, path) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
-                    if !host.is_empty() && !host.eq_ignore_ascii_case("localhost") {
-                        return None;
-                    }
-                    path
+                    let is_here = host.is_empty() || host.eq_ignore_ascii_case("localhost");
+                    is_here.then_some(path)?
                 }
             };
             let path = decoded(path)?;
@@ -64,7 +53,7 @@ pub(super) fn folder(location: &str) -> Option<PathBuf> {
                 _ => path,
             }
         }
-        _ => location.to_owned(),
+        Some(_) => return None,
     };
     (!path.is_empty()).then(|| PathBuf::from(path))
 }
