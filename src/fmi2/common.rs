@@ -79,10 +79,6 @@ pub unsafe extern "C" fn fmi2Instantiate(
     let resources = resources.ok().and_then(|text| resources::folder(text.to_str().ok()?));
     let name = name.ok().filter(|name| !name.is_empty());
     let logger = |on| Logger::new(functions, name.unwrap_or(c"RelayContact"), on);
-    let refuse = |reason: &str| {
-        logger(false).log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
-        ptr::null_mut()
-    };
     let make = || {
         name.ok_or("instanceName is null or empty")?;
         let identity = identity(fmuType, guid, resources.as_deref())?;
@@ -91,8 +87,13 @@ pub unsafe extern "C" fn fmi2Instantiate(
         instance.map_err(|error| error.to_string())
     };
     let made = with_default(|| caught(make));
-    let made = made.unwrap_or_else(|panic| Err(Failure::Panic(panic).to_string()));
-    made.map_or_else(|reason| refuse(&reason), hand_out)
+    match made.unwrap_or_else(|panic| Err(Failure::Panic(panic).to_string())) {
+        Ok(instance) => hand_out(instance),
+        Err(reason) => {
+            logger(false).log_status(fmi2Error, &format!("fmi2Instantiate: {reason}"));
+            ptr::null_mut()
+        }
+    }
 }
 
 /// What is to be instantiated, or why no instance can be created.
