@@ -7,7 +7,7 @@ use crate::description::{DESCRIPTION, Kind};
 /// Number of slots for saved states of a sequence of calls; each slot also holds the serialized bytes.
 pub const SLOTS: usize = 3;
 
-/// Faults in the pointers of a call.
+/// What is wrong with the pointers of a call, or with the bytes of a saved state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     None,
@@ -23,11 +23,18 @@ pub enum Fault {
     NullAndEndless,
     /// The arrays have the largest number as length.
     Endless,
-    /// The saved state is foreign memory; the buffer is one byte too short.
+    /// The saved state is foreign memory.
     Foreign,
+    /// A bit of the bytes is flipped; its number is taken modulo their length.
+    Flip(u32),
+    /// The bytes are truncated; the length is taken modulo the full length.
+    Cut(u32),
+    /// So many bytes and one more are added.
+    Longer(u8),
 }
 
 impl Fault {
+    /// Those of pointers.
     pub const ALL: [Self; 7] = [
         Self::FirstNull,
         Self::MiddleNull,
@@ -67,32 +74,6 @@ impl Point {
     }
 }
 
-/// Damage to the bytes of a saved state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Damage {
-    None,
-    /// A flipped bit; its number is taken modulo the length.
-    Flip(u32),
-    /// Truncated bytes; the length is taken modulo the full length.
-    Cut(u32),
-    /// Additional bytes.
-    Longer(u8),
-}
-
-/// The functions `fmi2Get...Status`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StatusFunction {
-    Status,
-    Real,
-    Integer,
-    Boolean,
-    String,
-}
-
-impl StatusFunction {
-    pub const ALL: [Self; 5] = [Self::Status, Self::Real, Self::Integer, Self::Boolean, Self::String];
-}
-
 /// A call, named as the function of the standard, with its arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Call {
@@ -115,7 +96,7 @@ pub enum Call {
     /// The bytes are stored in the slot.
     Serialize(usize, Fault),
     /// From the bytes of the slot.
-    Deserialize(usize, Damage, Fault),
+    Deserialize(usize, Fault),
     DirectionalDerivative,
     /// Reference, order, value.
     SetInputDerivatives(Vec<(u32, i32, f64)>, Fault),
@@ -124,8 +105,8 @@ pub enum Call {
     /// Communication point and length of the step, s.
     DoStep(Point, f64),
     CancelStep,
-    /// The function, and the kind of status it is asked for.
-    Status(StatusFunction, u32, Fault),
+    /// `fmi2GetStatus`, or the function for a type; and the kind of status it is asked for.
+    Status(Option<Kind>, u32, Fault),
     /// Performed twice: set the state of the slot, set the inputs, make steps. Both must give the same bits.
     Replay {
         slot: usize,
@@ -137,46 +118,32 @@ pub enum Call {
 
 impl Call {
     /// Name of the C function.
-    pub fn function(&self) -> &'static str {
-        match self {
-            Self::SetDebugLogging(..) => "fmi2SetDebugLogging",
-            Self::SetupExperiment(..) => "fmi2SetupExperiment",
-            Self::EnterInitializationMode => "fmi2EnterInitializationMode",
-            Self::ExitInitializationMode => "fmi2ExitInitializationMode",
-            Self::Terminate => "fmi2Terminate",
-            Self::Reset => "fmi2Reset",
-            Self::Renew => "fmi2FreeInstance",
-            Self::Get(kind, ..) => match kind {
-                Kind::Real => "fmi2GetReal",
-                Kind::Integer => "fmi2GetInteger",
-                Kind::Boolean => "fmi2GetBoolean",
-                Kind::String => "fmi2GetString",
-            },
-            Self::Set(kind, ..) => match kind {
-                Kind::Real => "fmi2SetReal",
-                Kind::Integer => "fmi2SetInteger",
-                Kind::Boolean => "fmi2SetBoolean",
-                Kind::String => "fmi2SetString",
-            },
-            Self::GetState(..) => "fmi2GetFMUstate",
-            Self::SetState(..) | Self::Replay { .. } => "fmi2SetFMUstate",
-            Self::FreeState(..) => "fmi2FreeFMUstate",
-            Self::StateSize(..) => "fmi2SerializedFMUstateSize",
-            Self::Serialize(..) => "fmi2SerializeFMUstate",
-            Self::Deserialize(..) => "fmi2DeSerializeFMUstate",
-            Self::DirectionalDerivative => "fmi2GetDirectionalDerivative",
-            Self::SetInputDerivatives(..) => "fmi2SetRealInputDerivatives",
-            Self::GetOutputDerivatives(..) => "fmi2GetRealOutputDerivatives",
-            Self::DoStep(..) => "fmi2DoStep",
-            Self::CancelStep => "fmi2CancelStep",
-            Self::Status(function, ..) => match function {
-                StatusFunction::Status => "fmi2GetStatus",
-                StatusFunction::Real => "fmi2GetRealStatus",
-                StatusFunction::Integer => "fmi2GetIntegerStatus",
-                StatusFunction::Boolean => "fmi2GetBooleanStatus",
-                StatusFunction::String => "fmi2GetStringStatus",
-            },
-        }
+    pub fn function(&self) -> String {
+        let name = match self {
+            Self::SetDebugLogging(..) => "SetDebugLogging",
+            Self::SetupExperiment(..) => "SetupExperiment",
+            Self::EnterInitializationMode => "EnterInitializationMode",
+            Self::ExitInitializationMode => "ExitInitializationMode",
+            Self::Terminate => "Terminate",
+            Self::Reset => "Reset",
+            Self::Renew => "FreeInstance",
+            Self::Get(kind, ..) => &format!("Get{kind:?}"),
+            Self::Set(kind, ..) => &format!("Set{kind:?}"),
+            Self::GetState(..) => "GetFMUstate",
+            Self::SetState(..) | Self::Replay { .. } => "SetFMUstate",
+            Self::FreeState(..) => "FreeFMUstate",
+            Self::StateSize(..) => "SerializedFMUstateSize",
+            Self::Serialize(..) => "SerializeFMUstate",
+            Self::Deserialize(..) => "DeSerializeFMUstate",
+            Self::DirectionalDerivative => "GetDirectionalDerivative",
+            Self::SetInputDerivatives(..) => "SetRealInputDerivatives",
+            Self::GetOutputDerivatives(..) => "GetRealOutputDerivatives",
+            Self::DoStep(..) => "DoStep",
+            Self::CancelStep => "CancelStep",
+            Self::Status(None, ..) => "GetStatus",
+            Self::Status(Some(kind), ..) => &format!("Get{kind:?}Status"),
+        };
+        format!("fmi2{name}")
     }
 
     /// The calls of a complete initialisation.
@@ -210,7 +177,7 @@ impl Call {
 
     /// The last successful time.
     pub fn time() -> Self {
-        Self::Status(StatusFunction::Real, fmi2LastSuccessfulTime, Fault::None)
+        Self::Status(Some(Kind::Real), fmi2LastSuccessfulTime, Fault::None)
     }
 
     pub fn save(slot: usize) -> Self {
@@ -227,6 +194,6 @@ impl Call {
 
     /// Restores a saved state from undamaged bytes.
     pub fn deserialize(slot: usize) -> Self {
-        Self::Deserialize(slot, Damage::None, Fault::None)
+        Self::Deserialize(slot, Fault::None)
     }
 }

@@ -1,6 +1,6 @@
 //! Random calls: mostly ones allowed in the state of the instance, so that sequences continue, and some wrong ones.
 
-use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
+use crate::call::{Call, Fault, Point, SLOTS};
 use crate::choices::Choices;
 use crate::description::{DESCRIPTION, Kind, Role, Variable};
 use crate::moment::Moment;
@@ -211,23 +211,22 @@ fn state(choices: &mut Choices) -> Call {
         11 | 12 => Call::FreeState(slot, fault),
         13 => Call::StateSize(slot, fault),
         14..17 => Call::Serialize(slot, fault),
-        _ => Call::Deserialize(
-            slot,
-            match choices.below(8) {
-                0 => Damage::Flip(choices.bits()),
-                1 => Damage::Cut(choices.bits()),
-                2 => Damage::Longer(choices.one(&[0, 3, 255])),
-                _ => Damage::None,
-            },
-            fault,
-        ),
+        _ => {
+            let damage = match choices.below(8) {
+                0 => Fault::Flip(choices.bits()),
+                1 => Fault::Cut(choices.bits()),
+                2 => Fault::Longer(choices.one(&[0, 3, 255])),
+                _ => fault,
+            };
+            Call::Deserialize(slot, damage)
+        }
     }
 }
 
 fn status(choices: &mut Choices) -> Call {
-    use StatusFunction::{Boolean, Integer, Real, Status, String};
+    let [real, integer, boolean, string] = Kind::ALL.map(Some);
     Call::Status(
-        choices.one(&[Real, Real, Boolean, Status, Integer, String]),
+        choices.one(&[real, real, boolean, None, integer, string]),
         choices.one(&[2, 2, 3, 0, 1, 4, u32::MAX]),
         fault(choices),
     )

@@ -8,7 +8,7 @@ use testing::instance::Arguments;
 use testing::log::{self, Log, Message, callbacks};
 
 use crate::api::Api;
-use crate::call::{Call, Damage, Fault, SLOTS, StatusFunction};
+use crate::call::{Call, Fault, SLOTS};
 use crate::description::{DESCRIPTION, Kind};
 use crate::pointers::{arguments, middle, place, places};
 use crate::texts;
@@ -86,12 +86,12 @@ impl<'a> Importer<'a> {
                 }
                 Call::Get(kind, references, fault) => return self.get(*kind, references, *fault),
                 Call::Set(kind, values, fault) => self.set(*kind, values, *fault),
-                Call::GetState(..)
-                | Call::SetState(..)
-                | Call::FreeState(..)
-                | Call::StateSize(..)
-                | Call::Serialize(..)
-                | Call::Deserialize(..) => return self.state_call(call),
+                Call::GetState(slot, fault)
+                | Call::SetState(slot, fault)
+                | Call::FreeState(slot, fault)
+                | Call::StateSize(slot, fault)
+                | Call::Serialize(slot, fault)
+                | Call::Deserialize(slot, fault) => return self.state_call(call, *slot, *fault),
                 Call::DirectionalDerivative => {
                     let (known, unknown) = (DESCRIPTION.variables[0].reference, DESCRIPTION.outputs(Kind::Real)[0]);
                     let (change, mut result) = (1.0, 0.0);
@@ -178,29 +178,36 @@ impl<'a> Importer<'a> {
         unsafe { function(self.component, vr, count, value) }
     }
 
-    fn state_call(&mut self, call: &Call) -> Answer {
+    fn state_call(&mut self, call: &Call, slot: usize, fault: Fault) -> Answer {
         let (api, c) = (self.api, self.component);
         let mut memory = [0_u64; 8];
         let mut foreign: fmi2FMUstate = memory.as_mut_ptr().cast();
-        // The state itself, as some functions expect it.
-        let state = |slot: usize, fault| match fault {
+        // The state itself, for functions that read it.
+        let state = match fault {
             Fault::Foreign => foreign,
             Fault::FirstNull => ptr::null_mut(),
             Fault::Misaligned => foreign.wrapping_byte_add(1),
             _ => self.states[slot],
         };
+        // Where functions that make or free a state find it: their last argument.
+        let is_null = fault == if matches!(call, Call::Deserialize(..)) { Fault::LastNull } else { Fault::FirstNull };
+        let place = match fault {
+            Fault::Foreign => &raw mut foreign,
+            _ if is_null => ptr::null_mut(),
+            _ => &raw mut self.states[slot],
+        };
+        let mut size = 0;
         let status = unsafe {
-            match *call {
-                Call::SetState(slot, fault) => (api.fmi2SetFMUstate)(c, state(slot, fault)),
-                Call::StateSize(slot, fault) => {
-                    let mut size = 0;
+            match call {
+                Call::GetState(..) => (api.fmi2GetFMUstate)(c, place),
+                Call::SetState(..) => (api.fmi2SetFMUstate)(c, state),
+                Call::FreeState(..) => (api.fmi2FreeFMUstate)(c, place),
+                Call::StateSize(..) => {
                     let place = if fault == Fault::LastNull { ptr::null_mut() } else { &raw mut size };
-                    let status = (api.fmi2SerializedFMUstateSize)(c, state(slot, fault), place);
+                    let status = (api.fmi2SerializedFMUstateSize)(c, state, place);
                     return (status, vec![size as f64]);
                 }
-                Call::Serialize(slot, fault) => {
-                    let from = state(slot, fault);
-                    let mut size = 0;
+                Call::Serialize(..) => {
                     if !self.states[slot].is_null() {
                         (api.fmi2SerializedFMUstateSize)(c, self.states[slot], &raw mut size);
                     }
@@ -211,60 +218,36 @@ impl<'a> Importer<'a> {
                         Fault::Endless => (room.as_mut_ptr().cast(), usize::MAX),
                         _ => (room.as_mut_ptr().cast(), size),
                     };
-                    let status = (api.fmi2SerializeFMUstate)(c, from, place, size);
+                    let status = (api.fmi2SerializeFMUstate)(c, state, place, size);
                     if status == fmi2OK {
                         self.bytes[slot] = room;
                     }
                     status
                 }
-                Call::GetState(slot, fault) => match fault {
-                    Fault::FirstNull => (api.fmi2GetFMUstate)(c, ptr::null_mut()),
-                    Fault::Foreign => (api.fmi2GetFMUstate)(c, &raw mut foreign),
-                    _ => (api.fmi2GetFMUstate)(c, &raw mut self.states[slot]),
-                },
-                Call::FreeState(slot, fault) => match fault {
-                    Fault::FirstNull => (api.fmi2FreeFMUstate)(c, ptr::null_mut()),
-                    Fault::Foreign => (api.fmi2FreeFMUstate)(c, &raw mut foreign),
-                    _ => (api.fmi2FreeFMUstate)(c, &raw mut self.states[slot]),
-                },
-                Call::Deserialize(slot, damage, fault) => {
-                    let bytes = damaged(&self.bytes[slot], damage);
-                    let (bytes, size) = match fault {
-                        Fault::FirstNull => (ptr::null(), bytes.len()),
-                        Fault::NullAndEndless => (ptr::null(), usize::MAX),
-                        Fault::Endless => (bytes.as_ptr().cast(), usize::MAX),
-                        _ => (bytes.as_ptr().cast(), bytes.len()),
-                    };
-                    let place = match fault {
-                        Fault::LastNull => ptr::null_mut(),
-                        Fault::Foreign => &raw mut foreign,
-                        _ => &raw mut self.states[slot],
-                    };
-                    (api.fmi2DeSerializeFMUstate)(c, bytes, size, place)
+                _ => {
+                    let bytes = damaged(&self.bytes[slot], fault);
+                    let (bytes, _, size) = arguments(fault, &bytes, &bytes);
+                    (api.fmi2DeSerializeFMUstate)(c, bytes.cast(), size, place)
                 }
-                _ => unreachable!("not a call on saved states: {call:?}"),
             }
         };
         assert_eq!(memory, [0; 8], "{call:?}: wrote to memory that is not a saved state");
         (status, Vec::new())
     }
 
-    fn status(&self, function: StatusFunction, kind: u32, fault: Fault) -> Answer {
+    fn status(&self, function: Option<Kind>, kind: u32, fault: Fault) -> Answer {
         let (api, c) = (self.api, self.component);
         let (mut status, mut real, mut integer, mut text) = (fmi2OK, f64::NAN, i32::MIN, ptr::null());
-        unsafe {
+        let answer = unsafe {
             match function {
-                StatusFunction::Status => ((api.fmi2GetStatus)(c, kind, place(fault, &mut status)), Vec::new()),
-                StatusFunction::Real => ((api.fmi2GetRealStatus)(c, kind, place(fault, &mut real)), vec![real]),
-                StatusFunction::Integer => {
-                    ((api.fmi2GetIntegerStatus)(c, kind, place(fault, &mut integer)), Vec::new())
-                }
-                StatusFunction::Boolean => {
-                    ((api.fmi2GetBooleanStatus)(c, kind, place(fault, &mut integer)), vec![f64::from(integer)])
-                }
-                StatusFunction::String => ((api.fmi2GetStringStatus)(c, kind, place(fault, &mut text)), Vec::new()),
+                None => (api.fmi2GetStatus)(c, kind, place(fault, &mut status)),
+                Some(Kind::Real) => (api.fmi2GetRealStatus)(c, kind, place(fault, &mut real)),
+                Some(Kind::Integer) => (api.fmi2GetIntegerStatus)(c, kind, place(fault, &mut integer)),
+                Some(Kind::Boolean) => (api.fmi2GetBooleanStatus)(c, kind, place(fault, &mut integer)),
+                Some(Kind::String) => (api.fmi2GetStringStatus)(c, kind, place(fault, &mut text)),
             }
-        }
+        };
+        (answer, vec![if function == Some(Kind::Real) { real } else { integer.into() }])
     }
 }
 
@@ -274,18 +257,17 @@ impl Drop for Importer<'_> {
     }
 }
 
-/// The damaged bytes.
-pub fn damaged(bytes: &[u8], damage: Damage) -> Vec<u8> {
+/// The bytes with their damage.
+fn damaged(bytes: &[u8], fault: Fault) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    match damage {
-        Damage::None => {}
-        Damage::Flip(_) | Damage::Cut(_) if bytes.is_empty() => {}
-        Damage::Flip(at) => {
+    match fault {
+        Fault::Flip(at) if !bytes.is_empty() => {
             let at = at as usize % (8 * bytes.len());
             bytes[at / 8] ^= 1 << (at % 8);
         }
-        Damage::Cut(length) => bytes.truncate(length as usize % bytes.len()),
-        Damage::Longer(count) => bytes.extend(vec![0; usize::from(count) + 1]),
+        Fault::Cut(length) if !bytes.is_empty() => bytes.truncate(length as usize % bytes.len()),
+        Fault::Longer(count) => bytes.extend(vec![0; usize::from(count) + 1]),
+        _ => {}
     }
     bytes
 }

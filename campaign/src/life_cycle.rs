@@ -13,7 +13,7 @@
 
 use relay_contact::fmi2::*;
 
-use crate::call::{Call, Damage, Fault, Point, SLOTS, StatusFunction};
+use crate::call::{Call, Fault, Point, SLOTS};
 use crate::description::{DESCRIPTION, Kind, Role, Variable};
 use crate::moment::Moment;
 use crate::states::{Phase, allowed};
@@ -96,7 +96,7 @@ impl Default for LifeCycle {
 impl LifeCycle {
     /// The expected outcome of a call.
     pub fn verdict(&self, call: &Call) -> Verdict {
-        if !allowed(call.function(), self.now.phase) {
+        if !allowed(&call.function(), self.now.phase) {
             return Fail;
         }
         match call {
@@ -124,7 +124,7 @@ impl LifeCycle {
             Call::DoStep(point, size) => self.step(*point, *size),
             Call::Status(function, kind, fault) => match (fault, function, kind) {
                 (Fault::LastNull | Fault::Misaligned, ..) => Fail,
-                (_, StatusFunction::Real, 2) | (_, StatusFunction::Boolean, 3) => Accept,
+                (_, Some(Kind::Real), 2) | (_, Some(Kind::Boolean), 3) => Accept,
                 _ => Discard,
             },
             Call::DirectionalDerivative => Refuse,
@@ -162,10 +162,11 @@ impl LifeCycle {
             Call::Serialize(slot, fault) => {
                 self.held(*slot, *fault, &[Fault::LastNull, Fault::Endless, Fault::NullAndEndless])
             }
-            Call::Deserialize(slot, damage, fault) => {
-                let wrong = [Fault::FirstNull, Fault::LastNull, Fault::Foreign, Fault::Endless, Fault::NullAndEndless];
-                if *damage == Damage::None && self.written[*slot].is_some() { no_fault(*fault, &wrong) } else { Fail }
-            }
+            // Anything wrong but what concerns other pointers.
+            Call::Deserialize(slot, fault) => match fault {
+                Fault::None | Fault::MiddleNull | Fault::Misaligned if self.written[*slot].is_some() => Accept,
+                _ => Fail,
+            },
             Call::Replay { .. } => unreachable!("a replay consists of other calls"),
         }
     }
@@ -360,9 +361,9 @@ fn first_wrong(verdicts: impl Iterator<Item = Verdict>) -> Verdict {
 /// The verdict on the pointers of arrays of a length, unless they are valid. Pointers of empty arrays are not checked.
 fn arrays(fault: Fault, length: usize) -> Option<Verdict> {
     let wrong = match fault {
-        Fault::None | Fault::MiddleNull | Fault::Foreign => false,
         Fault::FirstNull | Fault::LastNull | Fault::Misaligned => length > 0,
         Fault::NullAndEndless | Fault::Endless => true,
+        _ => false,
     };
     wrong.then_some(Fail)
 }

@@ -13,7 +13,7 @@ pub fn arguments<A, B>(fault: Fault, first: &[A], last: &[B]) -> (*const A, *con
         Fault::Misaligned => (pointers.0, pointers.1.wrapping_byte_add(1), first.len()),
         Fault::NullAndEndless => (ptr::null(), ptr::null(), usize::MAX),
         Fault::Endless => (pointers.0, pointers.1, usize::MAX),
-        Fault::None | Fault::MiddleNull | Fault::Foreign => (pointers.0, pointers.1, first.len()),
+        _ => (pointers.0, pointers.1, first.len()),
     }
 }
 
