@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::release::build;
 use crate::release::tools::{Rust, lld};
-use crate::{fmu, linked, python};
+use crate::{fmu, python};
 
 /// What cargo calls the platform.
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -61,12 +61,11 @@ pub fn page() -> Result<PathBuf> {
 
 /// The library in WebAssembly.
 fn library() -> Result<Vec<u8>> {
-    let metadata = linked::metadata()?;
     let rust = Rust::find()?;
     let linker = format!("-Clinker={}", lld(&rust.rustc)?.display());
     let mut build = cargo();
     build.args(fmu::CARGO_RUSTC).arg("--package=explore");
-    build::with_std(&mut build, &rust, "panic_abort", vec![linker], &metadata);
+    build::with_std(&mut build, &rust, "panic_abort", vec![linker])?;
     run(build.arg(format!("--target={TARGET}")))?;
-    read(build::folder(&metadata).join(TARGET).join("release/explore.wasm"))
+    read(build::folder()?.join(TARGET).join("release/explore.wasm"))
 }

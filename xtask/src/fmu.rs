@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use crate::commands::{cargo, is_there, read, root, run, write};
 use anyhow::{Result, bail};
-use cargo_metadata::Metadata;
 use relay_contact::C_HEADER;
 
 use crate::package::{Files, pack};
@@ -27,22 +26,21 @@ pub fn build() -> Result<PathBuf> {
 /// Writes a variant of the component as `dist/NAME.fmu` and returns its path. Also writes, for C programs, the library to
 /// `lib` and its header to `include`.
 pub fn build_variant(variant: &Variant) -> Result<PathBuf> {
-    let metadata = linked::metadata()?;
-    build_library(&metadata)?;
+    build_library()?;
     let folder = platform()?;
     let name = format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}");
-    let library = read(metadata.target_directory.as_std_path().join("release").join(&name))?;
+    let library = read(linked::metadata()?.target_directory.as_std_path().join("release").join(&name))?;
     write("dist/include/relay_contact.h", C_HEADER)?;
     write(format!("dist/lib/{name}"), &library)?;
     let libraries = [(folder, DLL_EXTENSION, library)];
-    let files = files(variant, &metadata, libraries, Path::new("rustc"), &[], Files::new())?;
+    let files = files(variant, libraries, Path::new("rustc"), &[], Files::new())?;
     write(format!("dist/{}.fmu", variant.name), &pack(&files)?)
 }
 
 /// Cargo's arguments to build a package's shared library only, as otherwise it is not optimised across crates.
 pub const CARGO_RUSTC: [&str; 4] = ["rustc", "--release", "--lib", "--crate-type=cdylib"];
 
-fn build_library(metadata: &Metadata) -> Result<()> {
+fn build_library() -> Result<()> {
     let mut build = cargo();
     build.args(CARGO_RUSTC).arg("--package=relay-contact");
     // Cargo takes rustc's flags from one place only, so these are added to the user's.
@@ -51,7 +49,7 @@ fn build_library(metadata: &Metadata) -> Result<()> {
         let flags = flags.split(separator).filter(|flag| !flag.is_empty());
         Some(flags.map(str::to_owned).collect::<Vec<_>>())
     };
-    let ours = path_flags(metadata);
+    let ours = path_flags()?;
     if let Some(flags) = given("CARGO_ENCODED_RUSTFLAGS", '\x1f').or_else(|| given("RUSTFLAGS", ' ')) {
         build.env("CARGO_ENCODED_RUSTFLAGS", [flags, ours].concat().join("\x1f"));
     } else {
@@ -67,12 +65,13 @@ fn build_library(metadata: &Metadata) -> Result<()> {
 
 /// Flags that remove the folders of this machine from the library: without them panic messages contain full paths of
 /// source files.
-pub fn path_flags(metadata: &Metadata) -> Vec<String> {
+pub fn path_flags() -> Result<Vec<String>> {
+    let metadata = linked::metadata()?;
     let foreign = metadata.packages.iter().filter(|package| package.source.is_some());
     let crates: BTreeSet<_> = foreign.filter_map(|package| package.manifest_path.parent()?.parent()).collect();
     let crates = crates.iter().map(|folder| format!("--remap-path-prefix={folder}=crates"));
     let project = format!("--remap-path-prefix={}=relay-contact", metadata.workspace_root);
-    crates.chain([project]).collect()
+    Ok(crates.chain([project]).collect())
 }
 
 /// The contents of the archive. Libraries come with their folder and extension; `rustc` is the compiler whose standard
@@ -80,13 +79,12 @@ pub fn path_flags(metadata: &Metadata) -> Vec<String> {
 /// those of what is linked beside the crates.
 pub fn files<'a>(
     variant: &Variant,
-    metadata: &Metadata,
     libraries: impl IntoIterator<Item = (&'a str, &'a str, Vec<u8>)>,
     rustc: &Path,
     targets: &[&str],
     more_licences: Files,
 ) -> Result<Files> {
-    let crates = linked::crates(metadata, targets)?;
+    let crates = linked::crates(targets)?;
     let mut files = licences::texts(&crates, rustc, more_licences)?;
     for (path, contents) in [
         ("modelDescription.xml", variant.description.clone().into_bytes()),
@@ -126,9 +124,8 @@ mod tests {
 
     #[test]
     fn everything_but_the_library_is_the_same_bytes_every_time() -> Result<()> {
-        let metadata = linked::metadata()?;
         let variant = Variant::new(false, None)?;
-        let files = || files(&variant, &metadata, [], Path::new("rustc"), &[], Files::new());
+        let files = || files(&variant, [], Path::new("rustc"), &[], Files::new());
         assert_eq!(pack(&files()?)?, pack(&files()?)?);
         Ok(())
     }

@@ -5,33 +5,40 @@
 //! common text, the second writes no CycloneDX 1.6.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 use crate::commands::{cargo, output, root};
 use anyhow::{Context, Result};
 use cargo_metadata::{Metadata, MetadataCommand, Package};
 
-/// What cargo knows about the project.
-pub fn metadata() -> Result<Metadata> {
-    Ok(MetadataCommand::new().current_dir(root()).exec()?)
+/// What cargo knows about the project, asked once.
+pub fn metadata() -> Result<&'static Metadata> {
+    static KNOWN: OnceLock<Metadata> = OnceLock::new();
+    if let Some(known) = KNOWN.get() {
+        return Ok(known);
+    }
+    let metadata = MetadataCommand::new().current_dir(root()).exec()?;
+    Ok(KNOWN.get_or_init(|| metadata))
 }
 
 /// The component itself among the crates.
 pub const COMPONENT: &str = "relay-contact";
 
 /// A crate that is linked.
-pub struct Linked<'a> {
+pub struct Linked {
     /// Its metadata from cargo.
-    pub package: &'a Package,
+    pub package: &'static Package,
     /// Its direct dependencies.
     pub uses: BTreeSet<String>,
 }
 
 /// All of them, the component included, as `name@version`.
-pub type Crates<'a> = BTreeMap<String, Linked<'a>>;
+pub type Crates = BTreeMap<String, Linked>;
 
 /// Finds them. `targets` are the target triples; empty for this machine. `cargo tree` is used because, unlike `cargo
 /// metadata`, it resolves features for this package only.
-pub fn crates<'a>(metadata: &'a Metadata, targets: &[&str]) -> Result<Crates<'a>> {
+pub fn crates(targets: &[&str]) -> Result<Crates> {
+    let metadata = metadata()?;
     let mut tree = cargo();
     tree.args(["tree", "--prefix=depth", "--format= {p}"]);
     tree.args(["--edges=normal,no-proc-macro", "--package", COMPONENT]);

@@ -26,7 +26,6 @@ const VALGRIND: [&str; 6] = [
 /// Runs the campaign and the C program under valgrind.
 pub fn run() -> Result<()> {
     ensure!(is_there("valgrind"), MISSING);
-    let metadata = linked::metadata()?;
     let mut campaign = cargo();
     campaign
         .args(["test", "--test=loaded_library"])
@@ -38,7 +37,7 @@ pub fn run() -> Result<()> {
     run_command(&mut campaign)?;
     let runner = Runner { compiler: vec!["cc".into()], start: VALGRIND.map(Into::into).to_vec() };
     // Cargo builds the library beside the test.
-    let built = metadata.target_directory.as_std_path().join("debug/deps");
+    let built = linked::metadata()?.target_directory.as_std_path().join("debug/deps");
     let library = built.join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));
     let trial = Trial::prepare(runner, "valgrind", &library)?;
     print!("{}", trial.embedded()?);

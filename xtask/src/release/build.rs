@@ -5,25 +5,20 @@ use std::process::Command;
 
 use crate::commands::{cargo, command, read, run, text, write};
 use anyhow::{Context, Result};
-use cargo_metadata::Metadata;
 
 use super::check::{declared, without_time};
+use super::platform::{GLIBC, MACOS};
 use super::tools::{Rust, Tools, lld};
-use crate::fmu;
-
-/// Oldest C library of Linux on which the libraries load.
-pub const GLIBC: &str = "2.17";
-/// Oldest macOS.
-pub const MACOS: &str = "11.0";
+use crate::{fmu, linked};
 
 /// Where all of it is built.
-pub fn folder(metadata: &Metadata) -> PathBuf {
-    metadata.target_directory.as_std_path().join("platforms")
+pub fn folder() -> Result<PathBuf> {
+    Ok(linked::metadata()?.target_directory.as_std_path().join("platforms"))
 }
 
 /// Builds the library for `target`, the platform as rustc calls it.
-pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u8>> {
-    let folder = folder(metadata);
+pub fn library(target: &str, tools: &Tools) -> Result<Vec<u8>> {
+    let folder = folder()?;
     let (mut flags, mut version) = (Vec::new(), String::new());
     let mut build = command(&tools.zigbuild);
     build.env("CARGO_ZIGBUILD_ZIG_PATH", &tools.zig);
@@ -34,12 +29,14 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
         build = cargo();
         build.env("SDKROOT", sdk(&tools.zig, &folder)?);
         // The linker strips: rustc would ask for a program that is not there.
-        build.env("MACOSX_DEPLOYMENT_TARGET", MACOS).env("CARGO_PROFILE_RELEASE_STRIP", "none");
+        build
+            .env("MACOSX_DEPLOYMENT_TARGET", format!("{}.{}", MACOS[0], MACOS[1]))
+            .env("CARGO_PROFILE_RELEASE_STRIP", "none");
     } else {
-        version = format!(".{GLIBC}");
+        version = format!(".{}.{}", GLIBC[0], GLIBC[1]);
     }
     build.args(fmu::CARGO_RUSTC).arg("--package=relay-contact");
-    with_std(&mut build, &tools.rust, "panic_unwind", flags, metadata);
+    with_std(&mut build, &tools.rust, "panic_unwind", flags)?;
     run(build.arg(format!("--target={target}{version}")))?;
     let release = folder.join(target).join("release");
     let names = ["librelay_contact.so", "relay_contact.dll", "librelay_contact.dylib"];
@@ -51,18 +48,19 @@ pub fn library(target: &str, tools: &Tools, metadata: &Metadata) -> Result<Vec<u
 
 /// Lets cargo compile the standard library too, with this crate for panics and without what prints backtraces: that would be an
 /// eighth of the size. The flags are for rustc, which removes the folders of this machine.
-pub fn with_std(build: &mut Command, rust: &Rust, panic: &str, flags: Vec<String>, metadata: &Metadata) {
-    let paths = fmu::path_flags(metadata).into_iter().chain(rust.path_flags());
+pub fn with_std(build: &mut Command, rust: &Rust, panic: &str, flags: Vec<String>) -> Result<()> {
+    let paths = fmu::path_flags()?.into_iter().chain(rust.path_flags());
     let flags: Vec<_> = paths.chain(flags).collect();
     build
         .args([&format!("-Zbuild-std=std,{panic}"), "-Zbuild-std-features="])
         .arg("--target-dir")
-        .arg(folder(metadata))
+        .arg(folder()?)
         // Of the user's flags none: the same archive everywhere.
         .env("CARGO_ENCODED_RUSTFLAGS", flags.join("\x1f"))
         .env_remove("RUSTC_WRAPPER")
         .env("RUSTC", &rust.rustc)
         .env("RUSTC_BOOTSTRAP", "1");
+    Ok(())
 }
 
 fn apple_flags(lld: &Path) -> Vec<String> {

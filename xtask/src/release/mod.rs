@@ -10,8 +10,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use crate::commands::write;
-use anyhow::{Result, bail, ensure};
-use cargo_metadata::Metadata;
+use anyhow::{Result, ensure};
 use clap::builder::PossibleValuesParser;
 use sha2::{Digest, Sha256};
 
@@ -19,7 +18,7 @@ use self::platform::{PLATFORMS, Platform};
 use self::tools::Tools;
 use crate::package::pack;
 use crate::variant::Variant;
-use crate::{explore, fmu, linked, python, wheel};
+use crate::{explore, fmu, python, wheel};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -31,17 +30,15 @@ pub struct Arguments {
 /// Builds, checks and tries the libraries, and writes `dist/release/RelayContact.fmu` with `SHA256SUMS` beside it and a Python
 /// package for each platform that carries its libraries and the page. A platform that cannot be built is omitted, and the command fails at the end.
 pub fn run(arguments: &Arguments) -> Result<()> {
-    let metadata = linked::metadata()?;
     let tools = Tools::find()?;
+    let private = check::private_folders(&tools.rust.rustc)?;
     let asked = |platform: &&Platform| {
         arguments.platforms.is_empty() || arguments.platforms.iter().any(|name| name == platform.folder)
     };
-    let release =
-        Release { metadata: &metadata, tools: &tools, private: check::private_folders(&metadata, &tools.rust.rustc)? };
     let (mut libraries, mut lines, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     for platform in PLATFORMS.iter().filter(asked) {
         println!("== {}", platform.folder);
-        match release.platform(platform) {
+        match built(platform, &tools, &private) {
             Ok((library, trial)) => {
                 lines.push(format!("{:15} {:7} bytes  {trial}", platform.folder, library.len()));
                 libraries.push((platform, library));
@@ -55,17 +52,17 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     }
     ensure!(!libraries.is_empty(), "no platform could be built");
     let runs_here = libraries.iter().any(|(platform, _)| trial::is_host(platform));
-    let packed = release.packed(&libraries)?;
-    let archive = write("dist/release/RelayContact.fmu", &packed)?;
-    write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &packed))?;
+    let full = packed(&libraries, &tools)?;
+    let archive = write("dist/release/RelayContact.fmu", &full)?;
+    write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &full))?;
     explore::page()?;
-    let wheels: BTreeSet<_> = libraries.iter().map(|(platform, _)| platform.wheel).collect();
+    let wheels: BTreeSet<_> = libraries.iter().map(|(platform, _)| platform.wheel()).collect();
     for wheel in wheels {
-        let carried = libraries.iter().filter(|(platform, _)| platform.wheel == wheel);
-        let carried = release.packed(&carried.cloned().collect::<Vec<_>>())?;
-        let folder = build::folder(&metadata).join("wheels").join(wheel);
+        let carried = libraries.iter().filter(|(platform, _)| platform.wheel() == wheel);
+        let carried = packed(&carried.cloned().collect::<Vec<_>>(), &tools)?;
+        let folder = build::folder()?.join("wheels").join(&wheel);
         let component = write(folder.join("RelayContact.fmu"), &carried)?;
-        wheel::build(&component, "dist/release", Some(wheel))?;
+        wheel::build(&component, "dist/release", Some(&wheel))?;
     }
     println!("== FMPy");
     if runs_here {
@@ -81,46 +78,34 @@ pub fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-struct Release<'a> {
-    metadata: &'a Metadata,
-    tools: &'a Tools,
-    /// Folders of this machine whose paths no library may contain.
-    private: Vec<PathBuf>,
+/// The archive with these libraries.
+fn packed(libraries: &[(&Platform, Vec<u8>)], tools: &Tools) -> Result<Vec<u8>> {
+    let targets: Vec<_> = libraries.iter().flat_map(|(platform, _)| platform.targets.iter().copied()).collect();
+    let binaries = libraries.iter().map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
+    pack(&fmu::files(&Variant::new(false, None)?, binaries, &tools.rust.rustc, &targets, tools.licences()?)?)
 }
 
-impl Release<'_> {
-    /// The archive with these libraries.
-    fn packed(&self, libraries: &[(&Platform, Vec<u8>)]) -> Result<Vec<u8>> {
-        let targets: Vec<_> = libraries.iter().flat_map(|(platform, _)| platform.targets.iter().copied()).collect();
-        let binaries =
-            libraries.iter().map(|(platform, library)| (platform.folder, platform.extension, library.clone()));
-        let (variant, licences) = (Variant::new(false, None)?, self.tools.licences()?);
-        let rustc = &self.tools.rust.rustc;
-        pack(&fmu::files(&variant, self.metadata, binaries, rustc, &targets, licences)?)
-    }
-
-    /// The library of a platform, checked, and what its trial showed.
-    fn platform(&self, platform: &Platform) -> Result<(Vec<u8>, String)> {
-        let parts = platform.targets.iter();
-        let parts = parts.map(|target| build::library(target, self.tools, self.metadata));
-        let parts = parts.collect::<Result<Vec<_>>>()?;
-        let library = match parts.as_slice() {
-            [one] => one.clone(),
-            several => check::join(several)?,
-        };
-        let report = check::library(platform, &library, &self.private)?;
+/// The library of a platform, checked, and what its trial showed. `private` are folders of this machine whose paths it may not
+/// contain.
+fn built(platform: &Platform, tools: &Tools, private: &[PathBuf]) -> Result<(Vec<u8>, String)> {
+    let (mut parts, mut failed) = (Vec::new(), Vec::new());
+    for target in platform.targets {
+        let part = build::library(target, tools)?;
+        let report = check::library(target, &part, private)?;
         print!("{}", report.text);
-        if !report.failed.is_empty() {
-            let failed = report.failed.iter().map(|(target, check)| format!("{target}: {check}"));
-            bail!("checks failed: {}", failed.collect::<Vec<_>>().join(", "));
-        }
-        let name = format!("RelayContact.{}", platform.extension);
-        let path = build::folder(self.metadata).join("libraries").join(platform.folder).join(name);
-        write(&path, &library)?;
-        let trial = trial::run(platform, &path, &self.tools.zig)?;
-        println!("{trial}");
-        Ok((library, trial))
+        failed.extend(report.failed.iter().map(|check| format!("{target}: {check}")));
+        parts.push(part);
     }
+    ensure!(failed.is_empty(), "checks failed: {}", failed.join(", "));
+    let library = match parts.as_slice() {
+        [one] => one.clone(),
+        several => check::join(several)?,
+    };
+    let name = format!("RelayContact.{}", platform.extension);
+    let path = write(build::folder()?.join("libraries").join(platform.folder).join(name), &library)?;
+    let trial = trial::run(platform, &path, &tools.zig)?;
+    println!("{trial}");
+    Ok((library, trial))
 }
 
 /// A file's line of `SHA256SUMS`, as `sha256sum --check` reads it.

@@ -10,12 +10,10 @@ use goblin::elf::sym::{STB_LOCAL, STB_WEAK, STV_HIDDEN, STV_INTERNAL};
 use goblin::elf::symver::VerneedSection;
 
 use super::report::Report;
+use crate::release::platform::GLIBC;
 
 /// The parts of the GNU C library, by the names they all had until 2.17 and still have.
 const LIBRARIES: [&str; 5] = ["libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "ld-linux*"];
-
-/// The newest version of the GNU C library that may be asked for.
-const GLIBC: [u32; 2] = [2, 17];
 
 pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
     let elf = Elf::parse(bytes).context("not an ELF file")?;

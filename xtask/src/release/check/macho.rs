@@ -11,12 +11,10 @@ use goblin::mach::load_command::{CommandVariant, PLATFORM_MACOS};
 use sha2::{Digest, Sha256};
 
 use super::report::Report;
+use crate::release::platform::MACOS;
 
 /// What a program that links the library writes down to find it by.
 const INSTALL_NAME: &str = "@rpath/RelayContact.dylib";
-
-/// The newest macOS that may be asked for: the first on Arm.
-const MACOS: [u32; 2] = [11, 0];
 
 pub fn check(report: &mut Report, bytes: &[u8]) -> Result<()> {
     let library = MachO::parse(bytes, 0).context("not a macOS file")?;
