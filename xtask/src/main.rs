@@ -88,7 +88,7 @@ fn main() -> ExitCode {
         Task::Report(arguments) => report::run(&arguments),
         Task::Importers => importers::run(),
         Task::Valgrind => valgrind::run(),
-        Task::Instructions => python::prepare().and_then(|()| python::report("instructions", &[""; 0])),
+        Task::Instructions => python::prepare().and_then(|()| python::report("instructions", &[])),
         Task::Release(arguments) => release::run(&arguments),
         Task::Test(arguments) => test::run(arguments),
     };

@@ -1,7 +1,7 @@
 //! The Python environment `.venv`, with exactly what `requirements.txt` lists.
 
 use std::env::consts::EXE_SUFFIX;
-use std::ffi::OsStr;
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -24,7 +24,7 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
 }
 
 /// Runs a task of the package `report` with its arguments.
-pub fn report(task: &str, arguments: &[impl AsRef<OsStr>]) -> Result<()> {
+pub fn report(task: &str, arguments: &[OsString]) -> Result<()> {
     run(python().args(["-m", "report", task]).args(arguments))
 }
 

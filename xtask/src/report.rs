@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
 pub fn with_component(task: &str) -> Result<()> {
     python::prepare()?;
     fmu::build()?;
-    python::report(task, &[""; 0])
+    python::report(task, &[])
 }
 
 /// Measures time over accuracy and what instances cost, and writes tables and figures of `docs/accuracy.md`.

@@ -32,33 +32,25 @@ pub fn run(arguments: Arguments) -> Result<()> {
             stage("lint", || run_command(cargo().arg("clippy").args(LINT)))?;
             return rust();
         }
-        // A program of its own, so that its output stays together.
-        both(library, || output(Command::new(env::current_exe()?).args(["test", "--component"])))?;
+        // In parallel, as most of the work uses one core; in a program of its own, whose output then stays together.
+        let component = thread::spawn(|| output(Command::new(env::current_exe()?).args(["test", "--component"])));
+        let library = library();
+        if library.is_err() {
+            println!("== FAILED, waiting for the stages beside it");
+        }
+        match (library, component.join().unwrap_or_else(|_| Err(anyhow!("panicked")))) {
+            (Err(library), Err(component)) => bail!("{library:#}\n{component:#}"),
+            (library, component) => {
+                print!("{}", component?);
+                library?;
+            }
+        }
         // Of what both have left.
         if_installed("report", report::has_chromium(), report::CHROMIUM_MISSING, || {
-            python::report("report", &["--quick"])?;
+            python::report("report", &["--quick".into()])?;
             python::test(&["report"], &fmu::path())
         })
     })
-}
-
-/// Runs both in parallel, as most of the work uses one core. The output of the second is printed at the end.
-fn both(first: impl FnOnce() -> Result<()>, second: impl FnOnce() -> Result<String> + Send) -> Result<()> {
-    let (first, second) = thread::scope(|scope| {
-        let second = scope.spawn(second);
-        let first = first();
-        if first.is_err() {
-            println!("== FAILED, waiting for the stages beside it");
-        }
-        (first, second.join().unwrap_or_else(|_| Err(anyhow!("panicked"))))
-    });
-    if let Ok(text) = &second {
-        print!("{text}");
-    }
-    match (first, second) {
-        (Err(first), Err(second)) => bail!("{first:#}\n{second:#}"),
-        (first, second) => first.and(second.map(|_| ())),
-    }
 }
 
 /// Unit and integration tests.

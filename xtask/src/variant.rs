@@ -7,6 +7,7 @@ use anyhow::{Context, Result, ensure};
 use relay_contact::scene::spring::SpringFile;
 use relay_contact::variables::{GUID, PLAIN_GUID, guid_carrying};
 use relay_contact::{MODEL_DESCRIPTION, PLAIN_MODEL_DESCRIPTION};
+use roxmltree::Document;
 
 /// What is packed beside the library.
 pub struct Variant {
@@ -30,31 +31,24 @@ impl Variant {
         let mut variant = Self { name: name.to_owned(), description: description.to_owned(), spring: None };
         if let Some(path) = spring {
             let (file, text) = read(path)?;
-            let declaration = declaration("beam.file", description)?;
             variant.name = format!("{name}-{}", file.trim_end_matches(".toml"));
-            for (given, carrying) in [
-                (format!("modelName=\"{name}\""), format!("modelName=\"{}\"", variant.name)),
-                (guid.to_owned(), guid_carrying(guid, &file, &text)),
-                (
-                    declaration.to_owned(),
-                    declaration.replace("<String start=\"\"/>", &format!("<String start=\"{file}\"/>")),
-                ),
+            let document = Document::parse(description)?;
+            let model = document.root_element();
+            let variable = model.descendants().find(|node| node.attribute("name") == Some("beam.file"));
+            let value = variable.and_then(|variable| variable.first_element_child()).unwrap_or(model);
+            // From the end, so that places further up remain valid.
+            for (element, attribute, carrying) in [
+                (value, "start", &file),
+                (model, "guid", &guid_carrying(guid, &file, &text)),
+                (model, "modelName", &variant.name),
             ] {
-                ensure!(variant.description.matches(&given).count() == 1, "not once in the description: {given}");
-                variant.description = variant.description.replace(&given, &carrying);
+                let given = element.attribute_node(attribute).with_context(|| format!("no {attribute}"))?;
+                variant.description.replace_range(given.range_value(), carrying);
             }
             variant.spring = Some((file, text));
         }
         Ok(variant)
     }
-}
-
-/// The declaration of a variable in a description.
-fn declaration<'a>(name: &str, description: &'a str) -> Result<&'a str> {
-    let mut declarations = description.split_inclusive("</ScalarVariable>");
-    let found = declarations.find(|declaration| declaration.contains(&format!("name=\"{name}\"")));
-    let found = found.with_context(|| format!("{name}: not declared"))?;
-    Ok(found.split_once("<ScalarVariable ").map_or(found, |(_, own)| own))
 }
 
 /// Name and text of a spring file, checked.
@@ -74,7 +68,6 @@ fn read(path: &Path) -> Result<(String, String)> {
 #[cfg(test)]
 mod tests {
     use crate::commands::root;
-    use roxmltree::Document;
 
     use super::*;
 

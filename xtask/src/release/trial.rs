@@ -16,7 +16,7 @@ use relay_contact::C_HEADER;
 use relay_contact::scene::file::SceneFile;
 use relay_contact::variables::RealOutput;
 
-use super::platform::Platform;
+use super::platform::{GLIBC, Platform};
 use crate::reference;
 
 /// The scene that `paper_scene.c` runs.
@@ -101,7 +101,7 @@ impl Runner {
                 ensure!(is_there("qemu-aarch64"), missing("qemu-aarch64", "qemu-user"));
                 let there = Path::new(ARM).join("lib/libc.so.6").exists();
                 ensure!(there, missing("the C library of Arm", "libc6-arm64-cross"));
-                Ok(by_zig("aarch64-linux-gnu.2.17", &["qemu-aarch64", "-L", ARM]))
+                Ok(by_zig(&format!("aarch64-linux-gnu.{}.{}", GLIBC[0], GLIBC[1]), &["qemu-aarch64", "-L", ARM]))
             }
             "win64" => {
                 let wine = WINE.into_iter().find(|wine| is_there(wine));
