@@ -24,7 +24,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-use description::{declared, unit};
+use description::{Variable, attribute};
 use heck::{ToShoutySnakeCase, ToUpperCamelCase};
 use roxmltree::{Document, Node};
 
@@ -41,11 +41,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let guid = identified(&xml, &out.join("modelDescription.xml"))?;
     let plain_guid = identified(&plain::description(&xml)?, &out.join("plain.xml"))?;
     let document = Document::parse(&xml)?;
-    fs::write(out.join("variables.rs"), variables(&document, &guid, &plain_guid)?)?;
-    let list = element(&document, "ModelVariables")?;
-    fs::write(out.join("scene.rs"), scene::scene(&document, &list)?)?;
-    fs::write(out.join("inputs.rs"), scene::inputs(&document, &list)?)?;
-    header(&out, &constants(&document, &guid)?)
+    let declared = description::variables(&document)?;
+    fs::write(out.join("variables.rs"), variables(&document, &declared, &guid, &plain_guid)?)?;
+    fs::write(out.join("scene.rs"), scene::scene(&declared)?)?;
+    fs::write(out.join("inputs.rs"), scene::inputs(&declared)?)?;
+    header(&out, &constants(&document, &declared, &guid)?)
 }
 
 /// Writes a description with its GUID, so that any change of the description changes the GUID, and returns that.
@@ -72,7 +72,12 @@ const GROUPS: [(&str, &str); 9] = [
     ("BooleanOutput", "Boolean outputs."),
 ];
 
-fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String, Box<dyn Error>> {
+fn variables(
+    document: &Document,
+    declared: &[Variable],
+    guid: &str,
+    plain_guid: &str,
+) -> Result<String, Box<dyn Error>> {
     let mut code = format!(
         "/// Identifies the variables of this library: a hash of `modelDescription.xml`.\npub const GUID: &str = \"{guid}\";\n\
          /// The same of the plain description.\npub const PLAIN_GUID: &str = \"{plain_guid}\";\n"
@@ -85,15 +90,9 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
     }
     let mut table = String::new();
     let [mut members, mut arms, mut all] = [(); 3].map(|()| GROUPS.map(|_| String::new()));
-    let list = element(document, "ModelVariables")?;
-    let mut count = 0;
-    for (index, variable) in list.children().filter(Node::is_element).enumerate() {
-        count = index + 1;
-        let name = attribute(variable, "name")?;
-        let value = variable.first_element_child().ok_or("a variable without a type")?;
-        let kind = value.tag_name().name();
-        let unit = unit(document, value);
-        let role = match attribute(variable, "causality")? {
+    for (index, variable) in declared.iter().enumerate() {
+        let Variable { name, kind, unit, value, .. } = *variable;
+        let role = match variable.causality {
             "input" => "Input",
             "parameter" => "Parameter",
             _ => "Output",
@@ -102,7 +101,7 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
         let position = GROUPS.iter().position(|(name, _)| *name == group);
         let position = position.ok_or(format!("{name}: no group {group} in build.rs"))?;
         let variant = name.to_upper_camel_case();
-        let doc = scene::doc(document, variable, value)?;
+        let doc = scene::doc(variable);
         writeln!(members[position], "    /// {doc}.\n    {variant},")?;
         writeln!(arms[position], "            Self::{variant} => &VARIABLES[{index}],")?;
         write!(all[position], "Self::{variant}, ")?;
@@ -116,7 +115,7 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
             table,
             "    Variable {{ name: {name:?}, value_reference: {}, group: Group::{group}({group}::{variant}), unit: {unit:?}, \
              start: {}, min: {}, max: {} }},",
-            attribute(variable, "valueReference")?,
+            attribute(variable.element, "valueReference")?,
             number("start", "0.0"),
             number("min", "f64::NEG_INFINITY"),
             number("max", "f64::INFINITY"),
@@ -124,9 +123,10 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
     }
     writeln!(
         code,
-        "/// Every variable of the component, in the order of `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {count}] = [\n{table}];"
+        "/// Every variable of the component, in the order of `modelDescription.xml`.\n#[allow(clippy::unreadable_literal)]\npub static VARIABLES: [Variable; {}] = [\n{table}];",
+        declared.len()
     )?;
-    writeln!(code, "{}", by_reference(&list)?)?;
+    writeln!(code, "{}", by_reference(declared)?)?;
     writeln!(
         code,
         "/// A variable, as a value of the enum of its group.\n#[derive(Clone, Copy, Debug, PartialEq, Eq)]\npub enum Group {{"
@@ -147,35 +147,11 @@ fn variables(document: &Document, guid: &str, plain_guid: &str) -> Result<String
     Ok(code)
 }
 
-fn element<'a, 'input>(document: &'a Document<'input>, name: &str) -> Result<Node<'a, 'input>, String> {
-    let found = document.descendants().find(|node| node.has_tag_name(name));
-    found.ok_or(format!("modelDescription.xml has no {name}"))
-}
-
-/// The Rust type of a parameter, and its start value.
-fn start(document: &Document, value: Node) -> Result<(String, String), Box<dyn Error>> {
-    let start = attribute(value, "start")?;
-    Ok(match value.tag_name().name() {
-        "Real" => ("f64".to_owned(), format!("{start}_f64")),
-        "Integer" => ("i32".to_owned(), start.to_owned()),
-        "Boolean" => ("bool".to_owned(), start.to_owned()),
-        _ => {
-            let kind = attribute(value, "declaredType")?;
-            let choice = declared(document, value)
-                .into_iter()
-                .flat_map(|definition| definition.descendants())
-                .find(|item| item.attribute("value") == Some(start))
-                .ok_or(format!("{kind} has no choice {start}"))?;
-            (kind.to_owned(), format!("{kind}::{}", attribute(choice, "name")?))
-        }
-    })
-}
-
 /// For each value reference up to the largest, the index of its variable in the table; `u16::MAX` for none.
-fn by_reference(list: &Node) -> Result<String, Box<dyn Error>> {
+fn by_reference(declared: &[Variable]) -> Result<String, Box<dyn Error>> {
     let mut positions = Vec::new();
-    for (index, variable) in list.children().filter(Node::is_element).enumerate() {
-        let reference = usize::from(attribute(variable, "valueReference")?.parse::<u16>()?);
+    for (index, variable) in declared.iter().enumerate() {
+        let reference = usize::from(attribute(variable.element, "valueReference")?.parse::<u16>()?);
         positions.resize(positions.len().max(reference + 1), u16::MAX);
         if positions[reference] != u16::MAX {
             return Err(format!("value reference {reference} is used twice").into());
@@ -209,12 +185,8 @@ fn enumeration(code: &mut String, definition: Node, list: Node) -> Result<(), Bo
     Ok(())
 }
 
-fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Result<&'a str, String> {
-    node.attribute(name).ok_or_else(|| format!("{:?} has no attribute {name}", node.tag_name().name()))
-}
-
 /// For C: the GUID, the value reference of every variable, and the choices of the enumerations.
-fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> {
+fn constants(document: &Document, declared: &[Variable], guid: &str) -> Result<String, Box<dyn Error>> {
     let mut code = String::new();
     let mut define = |doc: &str, name: &str, value: &str| {
         let name = name.to_shouty_snake_case();
@@ -222,15 +194,13 @@ fn constants(document: &Document, guid: &str) -> Result<String, Box<dyn Error>> 
     };
     let doc = "The argument `fmuGUID` of `fmi2Instantiate`: a hash of modelDescription.xml";
     define(doc, "GUID", &format!("\"{guid}\""))?;
-    for variable in element(document, "ModelVariables")?.children().filter(Node::is_element) {
-        let value = variable.first_element_child().ok_or("a variable without a type")?;
-        let (name, kind) = (attribute(variable, "name")?, value.tag_name().name());
-        let unit = match unit(document, value) {
+    for Variable { name, description, element, kind, unit, .. } in declared {
+        let unit = match *unit {
             "" | "1" => String::new(),
             unit => format!(" in {unit}"),
         };
-        let doc = format!("`{name}`, {kind}{unit}: {}", attribute(variable, "description")?);
-        define(&doc, name, &format!("{}u", attribute(variable, "valueReference")?))?;
+        let doc = format!("`{name}`, {kind}{unit}: {description}");
+        define(&doc, name, &format!("{}u", attribute(*element, "valueReference")?))?;
     }
     for item in document.descendants().filter(|node| node.has_tag_name("Item")) {
         let kind = item.ancestors().find(|node| node.has_tag_name("SimpleType"));

@@ -3,24 +3,22 @@
 
 use std::error::Error;
 
-use roxmltree::{Document, Node};
+use roxmltree::Document;
 
-use crate::description::declared;
+use crate::description::variables;
 
 /// The plain description. What the numbers stand for moves to the descriptions of the variables.
 pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {
     let document = Document::parse(xml)?;
-    let discrete = |node: &Node| ["Enumeration", "Integer", "Boolean"].contains(&node.tag_name().name());
     let mut text = xml.to_owned();
-    let values: Vec<_> = document.descendants().filter(discrete).collect();
     // From the end, so that positions further up remain valid.
-    for value in values.iter().rev() {
-        let parent = value.parent().ok_or("a value without a parent")?;
-        if parent.has_tag_name("SimpleType") {
-            text.replace_range(parent.range(), "");
-            continue;
-        }
-        let numbers = numbers(&document, value);
+    for variable in variables(&document)?.into_iter().rev() {
+        let numbers = match variable.kind {
+            "Real" | "String" => continue,
+            "Boolean" => vec![("0", "false"), ("1", "true")],
+            _ => variable.choices,
+        };
+        let value = variable.value;
         let real = match (value.attribute("start"), numbers.first(), numbers.last()) {
             (None, ..) => "<Real/>".to_owned(),
             (Some(start), Some((least, _)), Some((most, _))) => {
@@ -35,21 +33,17 @@ pub fn description(xml: &str) -> Result<String, Box<dyn Error>> {
         };
         text.replace_range(value.range(), &real);
         if !numbers.is_empty() {
-            let described = parent.attribute_node("description").ok_or("no description")?;
+            let described = variable.element.attribute_node("description").ok_or("no description")?;
             let numbers = numbers.iter().map(|(number, name)| format!("{number} {name}"));
             let numbers = numbers.collect::<Vec<_>>().join(", ");
             text.insert_str(described.range_value().end, &format!(": {numbers}"));
         }
     }
-    Ok(text.replacen("modelName=\"RelayContact\"", "modelName=\"RelayContact-plain\"", 1))
-}
-
-/// What the numbers of a value stand for: none for an Integer.
-fn numbers<'a>(document: &'a Document, value: &Node) -> Vec<(&'a str, &'a str)> {
-    if value.has_tag_name("Boolean") {
-        return vec![("0", "false"), ("1", "true")];
+    let types: Vec<_> = document.descendants().filter(|node| node.has_tag_name("SimpleType")).collect();
+    for definition in types.into_iter().rev() {
+        if definition.first_element_child().is_some_and(|value| value.has_tag_name("Enumeration")) {
+            text.replace_range(definition.range(), "");
+        }
     }
-    let items = declared(document, *value).into_iter().flat_map(|definition| definition.descendants());
-    let numbers = items.filter_map(|item| Some((item.attribute("value")?, item.attribute("name")?)));
-    numbers.collect()
+    Ok(text.replacen("modelName=\"RelayContact\"", "modelName=\"RelayContact-plain\"", 1))
 }

@@ -6,10 +6,8 @@ use std::error::Error;
 use std::fmt::Write as _;
 
 use heck::{ToSnakeCase, ToUpperCamelCase};
-use roxmltree::{Document, Node};
 
-use crate::description::unit;
-use crate::{attribute, start};
+use crate::description::{Variable, attribute};
 
 /// What the groups of parameters describe.
 const GROUPS: [(&str, &str); 15] = [
@@ -55,31 +53,42 @@ impl Fields {
 }
 
 /// What is said of a variable, with its unit.
-pub fn doc(document: &Document, variable: Node, value: Node) -> Result<String, Box<dyn Error>> {
-    let note = match unit(document, value) {
+pub fn doc(variable: &Variable) -> String {
+    let Variable { name, description, .. } = variable;
+    let note = match variable.unit {
         "" => String::new(),
         unit => format!(" \\[{unit}\\]"),
     };
-    let (name, description) = (attribute(variable, "name")?, attribute(variable, "description")?);
-    Ok(format!("`{name}`: {description}{note}"))
+    format!("`{name}`: {description}{note}")
+}
+
+/// The Rust type of a parameter, and its start value.
+fn start(variable: &Variable) -> Result<(String, String), String> {
+    let start = attribute(variable.value, "start")?;
+    Ok(match variable.kind {
+        "Real" => ("f64".to_owned(), format!("{start}_f64")),
+        "Integer" => ("i32".to_owned(), start.to_owned()),
+        "Boolean" => ("bool".to_owned(), start.to_owned()),
+        _ => {
+            let kind = attribute(variable.value, "declaredType")?;
+            let choice = variable.choice(start).ok_or(format!("{kind} has no choice {start}"))?;
+            (kind.to_owned(), format!("{kind}::{choice}"))
+        }
+    })
 }
 
 /// The code of the structs and of the access to their fields.
-pub fn scene(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
+pub fn scene(declared: &[Variable]) -> Result<String, Box<dyn Error>> {
     let mut groups: BTreeMap<&str, Fields> = BTreeMap::new();
     let mut arms: BTreeMap<&str, Arms> = BTreeMap::new();
     let mut choices = String::new();
-    for variable in list.children().filter(Node::is_element) {
-        let value = variable.first_element_child().ok_or("a variable without a type")?;
-        let (name, kind) = (attribute(variable, "name")?, value.tag_name().name());
-        if attribute(variable, "causality")? != "parameter" || kind == "String" {
-            continue;
-        }
-        let (rust, start) = start(document, value)?;
-        let doc = doc(document, variable, value)?;
+    let parameters = declared.iter().filter(|variable| variable.causality == "parameter" && variable.kind != "String");
+    for variable in parameters {
+        let Variable { name, kind, .. } = *variable;
+        let (rust, start) = start(variable)?;
         let (group, field) = name.rsplit_once('.').ok_or(format!("{name} is in no group"))?;
         let field = field.to_snake_case();
-        groups.entry(group).or_default().add(&doc, &field, &rust, &start)?;
+        groups.entry(group).or_default().add(&doc(variable), &field, &rust, &start)?;
         let path = format!("{group}.{field}");
         let variant = name.to_upper_camel_case();
         let Arms { read, write } = arms.entry(kind).or_default();
@@ -167,18 +176,14 @@ fn access(code: &mut String, arms: &BTreeMap<&str, Arms>) -> Result<(), Box<dyn 
 }
 
 /// The code of the inputs: their values and rates, with the start values, and access to both by variable.
-pub fn inputs(document: &Document, list: &Node) -> Result<String, Box<dyn Error>> {
+pub fn inputs(declared: &[Variable]) -> Result<String, Box<dyn Error>> {
     let (mut values, mut rates, mut arms) = (Fields::default(), Fields::default(), String::new());
-    for variable in list.children().filter(Node::is_element) {
-        let value = variable.first_element_child().ok_or("a variable without a type")?;
-        if attribute(variable, "causality")? != "input" {
-            continue;
-        }
-        let name = attribute(variable, "name")?;
+    for variable in declared.iter().filter(|variable| variable.causality == "input") {
+        let Variable { name, unit, .. } = *variable;
         let (field, variant) = (name.to_snake_case(), name.to_upper_camel_case());
-        let (_, start) = start(document, value)?;
-        values.add(&doc(document, variable, value)?, &field, "f64", &start)?;
-        let of = format!("Rate of `{name}` \\[{} per s\\]", unit(document, value));
+        let (_, start) = start(variable)?;
+        values.add(&doc(variable), &field, "f64", &start)?;
+        let of = format!("Rate of `{name}` \\[{unit} per s\\]");
         rates.add(&of, &format!("{field}_rate"), "f64", "0.0")?;
         writeln!(arms, "            RealInput::{variant} => (&mut self.{field}, &mut self.{field}_rate),")?;
     }

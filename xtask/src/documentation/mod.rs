@@ -2,17 +2,18 @@
 //! words from the README and the page on spring files, so that none is written twice.
 
 mod block;
+#[expect(dead_code, reason = "the build script uses more of it")]
 #[path = "../../../build/description.rs"]
 mod description;
 
 use crate::commands::text;
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Error, Result, ensure};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use roxmltree::{Document, Node};
 
-use self::block::{attribute, block, variables};
-use self::description::{declared, unit};
+use self::block::block;
+use self::description::{Variable, variables};
 use crate::variant::Variant;
 
 /// That of the report.
@@ -28,6 +29,7 @@ pub fn page(variant: &Variant) -> Result<String> {
     let springs = springs.trim_start_matches("# Spring files").replace("\n## ", "\n### ");
     let document = Document::parse(&variant.description)?;
     let model = document.root_element();
+    let variables = variables(&document).map_err(Error::msg)?;
     let name = attribute(model, "modelName");
     let version = attribute(model, "version");
     let sections = SECTIONS.map(|title| section(&readme, title).map(|text| (title, markdown(text))));
@@ -50,11 +52,11 @@ pub fn page(variant: &Variant) -> Result<String> {
                 @if let Some((file, _)) = &variant.spring {
                     p { "This component carries the spring of " a href="#spring" { (file) } ", the start value of " code { "beam.file" } "." }
                 }
-                (scroll("The component as a block", &block(&document)))
+                (scroll("The component as a block", &block(name, &variables)))
                 @for (title, causality) in [("Inputs", "input"), ("Outputs", "output"),
                     ("Calculated parameters", "calculatedParameter"), ("Parameters", "parameter")] {
                     h2 { (title) }
-                    (scroll(title, &table(&document, causality)))
+                    (scroll(title, &table(&variables, causality)))
                 }
                 @if !enumerations.is_empty() {
                     h2 { "Choices" }
@@ -100,30 +102,28 @@ fn scroll(label: &str, content: &Markup) -> Markup {
     html! { div.scroll role="region" tabindex="0" aria-label=(label) { (content) } }
 }
 
-/// The start value; of an enumeration, the choice's name.
-fn start<'a>(document: &'a Document, value: Node<'a, 'a>) -> &'a str {
-    let start = attribute(value, "start");
-    let items = declared(document, value).into_iter().flat_map(|declared| declared.descendants());
-    let mut items = items.filter(|item| item.has_tag_name("Item"));
-    items.find(|item| attribute(*item, "value") == start).map_or(start, |item| attribute(item, "name"))
+/// An attribute, or nothing.
+fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
+    node.attribute(name).unwrap_or("")
 }
 
-fn table(document: &Document, causality: &str) -> Markup {
+/// The variables of a causality. The start value of an enumeration is the choice's name.
+fn table(variables: &[Variable], causality: &str) -> Markup {
     html! {
         table {
             tr { th { "name" } th { "type" } th { "unit" } th { "causality" } th { "start" } th { "min" } th { "max" } th { "description" } }
-            @for variable in variables(document, causality) {
-                @let value = variable.first_element_child().unwrap_or(variable);
-                @let enumeration = value.has_tag_name("Enumeration");
+            @for variable in variables.iter().filter(|variable| variable.causality == causality) {
+                @let value = variable.value;
+                @let start = attribute(value, "start");
                 tr {
-                    td { code { (attribute(variable, "name")) } }
-                    td { @if enumeration { (attribute(value, "declaredType")) } @else { (value.tag_name().name()) } }
-                    td { (unit(document, value)) }
+                    td { code { (variable.name) } }
+                    td { @if variable.kind == "Enumeration" { (attribute(value, "declaredType")) } @else { (variable.kind) } }
+                    td { (variable.unit) }
                     td { (causality) }
-                    td { (start(document, value)) }
+                    td { (variable.choice(start).unwrap_or(start)) }
                     td { (attribute(value, "min")) }
                     td { (attribute(value, "max")) }
-                    td { (attribute(variable, "description")) }
+                    td { (variable.description) }
                 }
             }
         }
