@@ -1,4 +1,4 @@
-//! A call as plain data, which can be made at any time, repeated and printed.
+//! A call as plain data, which can be made at any time, with a fault or without, repeated and printed.
 
 use relay_contact::fmi2::fmi2LastSuccessfulTime;
 
@@ -7,7 +7,7 @@ use crate::description::{DESCRIPTION, Kind};
 /// Number of slots for saved states of a sequence of calls; each slot also holds the serialized bytes.
 pub const SLOTS: usize = 3;
 
-/// What is wrong with the pointers of a call, or with the bytes of a saved state.
+/// What is wrong with the pointers of a call, or with the bytes of a saved state. Calls that it does not concern are made as without.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     None,
@@ -34,8 +34,9 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Those of pointers.
-    pub const ALL: [Self; 7] = [
+    /// Each kind.
+    pub const ALL: [Self; 11] = [
+        Self::None,
         Self::FirstNull,
         Self::MiddleNull,
         Self::LastNull,
@@ -43,6 +44,9 @@ impl Fault {
         Self::NullAndEndless,
         Self::Endless,
         Self::Foreign,
+        Self::Flip(500),
+        Self::Cut(60),
+        Self::Longer(0),
     ];
 }
 
@@ -77,7 +81,7 @@ impl Point {
 /// A call, named as the function of the standard, with its arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Call {
-    SetDebugLogging(bool, Vec<Option<String>>, Fault),
+    SetDebugLogging(bool, Vec<Option<String>>),
     /// Tolerance, start and stop.
     SetupExperiment(Option<f64>, f64, Option<f64>),
     EnterInitializationMode,
@@ -86,27 +90,27 @@ pub enum Call {
     Reset,
     /// `fmi2FreeInstance`, which frees the saved states too, and `fmi2Instantiate`; the bytes stay.
     Renew,
-    Get(Kind, Vec<u32>, Fault),
-    Set(Kind, Vec<(u32, f64)>, Fault),
+    Get(Kind, Vec<u32>),
+    Set(Kind, Vec<(u32, f64)>),
     /// Of a slot, as in the following.
-    GetState(usize, Fault),
-    SetState(usize, Fault),
-    FreeState(usize, Fault),
-    StateSize(usize, Fault),
+    GetState(usize),
+    SetState(usize),
+    FreeState(usize),
+    StateSize(usize),
     /// The bytes are stored in the slot.
-    Serialize(usize, Fault),
+    Serialize(usize),
     /// From the bytes of the slot.
-    Deserialize(usize, Fault),
+    Deserialize(usize),
     DirectionalDerivative,
     /// Reference, order, value.
-    SetInputDerivatives(Vec<(u32, i32, f64)>, Fault),
+    SetInputDerivatives(Vec<(u32, i32, f64)>),
     /// Reference, order.
-    GetOutputDerivatives(Vec<(u32, i32)>, Fault),
+    GetOutputDerivatives(Vec<(u32, i32)>),
     /// Communication point and length of the step, s.
     DoStep(Point, f64),
     CancelStep,
     /// `fmi2GetStatus`, or the function for a type; and the kind of status it is asked for.
-    Status(Option<Kind>, u32, Fault),
+    Status(Option<Kind>, u32),
     /// Performed twice: set the state of the slot, set the inputs, make steps. Both must give the same bits.
     Replay {
         slot: usize,
@@ -154,20 +158,11 @@ impl Call {
         let excitation = vec![(DESCRIPTION.reference("effects.excitation"), 2.0)];
         let amplitude = vec![(DESCRIPTION.reference("excitation.amplitude"), amplitude)];
         let [enter, exit] = Self::INITIALISE;
-        [Self::set(Kind::Integer, excitation), Self::set_reals(amplitude), enter, exit]
-    }
-
-    /// Reads variables; pointers are valid, as in all functions below.
-    pub fn get(kind: Kind, references: Vec<u32>) -> Self {
-        Self::Get(kind, references, Fault::None)
-    }
-
-    pub fn set(kind: Kind, values: Vec<(u32, f64)>) -> Self {
-        Self::Set(kind, values, Fault::None)
+        [Self::Set(Kind::Integer, excitation), Self::set_reals(amplitude), enter, exit]
     }
 
     pub fn set_reals(values: Vec<(u32, f64)>) -> Self {
-        Self::set(Kind::Real, values)
+        Self::Set(Kind::Real, values)
     }
 
     /// A step from the time of the instance.
@@ -176,24 +171,5 @@ impl Call {
     }
 
     /// The last successful time.
-    pub fn time() -> Self {
-        Self::Status(Some(Kind::Real), fmi2LastSuccessfulTime, Fault::None)
-    }
-
-    pub fn save(slot: usize) -> Self {
-        Self::GetState(slot, Fault::None)
-    }
-
-    pub fn restore(slot: usize) -> Self {
-        Self::SetState(slot, Fault::None)
-    }
-
-    pub fn serialize(slot: usize) -> Self {
-        Self::Serialize(slot, Fault::None)
-    }
-
-    /// Restores a saved state from undamaged bytes.
-    pub fn deserialize(slot: usize) -> Self {
-        Self::Deserialize(slot, Fault::None)
-    }
+    pub const TIME: Self = Self::Status(Some(Kind::Real), fmi2LastSuccessfulTime);
 }

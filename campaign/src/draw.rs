@@ -9,11 +9,21 @@ use crate::states::Phase;
 /// Longest step drawn, s, so that stiff scenes do not take minutes.
 const LONGEST_STEP: f64 = 1e-4;
 
-/// The next call of an instance.
-pub fn call(choices: &mut Choices, now: &Moment) -> Call {
-    if choices.percent(6) {
-        return anything(choices, now);
-    }
+/// The next call of an instance, with a fault, mostly none.
+pub fn call(choices: &mut Choices, now: &Moment) -> (Call, Fault) {
+    let call = if choices.percent(6) { anything(choices, now) } else { fitting(choices, now) };
+    let fault = match (&call, choices.below(100)) {
+        (_, 0 | 1) => choices.one(&Fault::ALL),
+        (Call::Deserialize(_), 2..14) => Fault::Flip(choices.bits()),
+        (Call::Deserialize(_), 14..26) => Fault::Cut(choices.bits()),
+        (Call::Deserialize(_), 26..38) => Fault::Longer(choices.one(&[0, 3, 255])),
+        _ => Fault::None,
+    };
+    (call, fault)
+}
+
+/// A call that is mostly allowed in the state.
+fn fitting(choices: &mut Choices, now: &Moment) -> Call {
     let pick = choices.below(100);
     match now.phase {
         Phase::Instantiated => match pick {
@@ -47,7 +57,7 @@ pub fn call(choices: &mut Choices, now: &Moment) -> Call {
         Phase::Terminated | Phase::Error => match pick {
             0..20 => get(choices, now),
             20..30 => status(choices),
-            30..60 => Call::restore(choices.below(SLOTS)),
+            30..60 => Call::SetState(choices.below(SLOTS)),
             60..70 => state(choices),
             70..75 => Call::Renew,
             _ => Call::Reset,
@@ -81,11 +91,6 @@ fn anything(choices: &mut Choices, now: &Moment) -> Call {
     }
 }
 
-/// A fault of the pointers, mostly none.
-fn fault(choices: &mut Choices) -> Fault {
-    if choices.percent(2) { choices.one(&Fault::ALL) } else { Fault::None }
-}
-
 fn logging(choices: &mut Choices) -> Call {
     let count = choices.below(3);
     let known = &DESCRIPTION.categories;
@@ -94,7 +99,7 @@ fn logging(choices: &mut Choices) -> Call {
         1 => Some("log%sAll".to_owned()),
         _ => Some(known[choices.below(known.len())].clone()),
     };
-    Call::SetDebugLogging(choices.percent(50), (0..count).map(|_| category(choices)).collect(), fault(choices))
+    Call::SetDebugLogging(choices.percent(50), (0..count).map(|_| category(choices)).collect())
 }
 
 fn setup(choices: &mut Choices) -> Call {
@@ -131,7 +136,7 @@ fn get(choices: &mut Choices, now: &Moment) -> Call {
     let wanted = |variable: &Variable| variable.kind == kind && !(before && variable.role == Role::Output);
     let count = choices.below(4);
     let count = if before && kind == Kind::Boolean { 0 } else { count };
-    Call::Get(kind, (0..count).map(|_| reference(choices, wanted)).collect(), fault(choices))
+    Call::Get(kind, (0..count).map(|_| reference(choices, wanted)).collect())
 }
 
 fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
@@ -144,7 +149,7 @@ fn set(choices: &mut Choices, now: &Moment, kind: Kind) -> Call {
         let reference = reference(choices, wanted);
         (reference, value(choices, reference))
     });
-    Call::Set(kind, values.collect(), fault(choices))
+    Call::Set(kind, values.collect())
 }
 
 /// Mostly near the start value, sometimes a bound, rarely out of range.
@@ -204,32 +209,20 @@ fn step_size(choices: &mut Choices) -> f64 {
 
 fn state(choices: &mut Choices) -> Call {
     let slot = choices.below(SLOTS);
-    let fault = fault(choices);
     match choices.below(20) {
-        0..6 => Call::GetState(slot, fault),
-        6..11 => Call::SetState(slot, fault),
-        11 | 12 => Call::FreeState(slot, fault),
-        13 => Call::StateSize(slot, fault),
-        14..17 => Call::Serialize(slot, fault),
-        _ => {
-            let damage = match choices.below(8) {
-                0 => Fault::Flip(choices.bits()),
-                1 => Fault::Cut(choices.bits()),
-                2 => Fault::Longer(choices.one(&[0, 3, 255])),
-                _ => fault,
-            };
-            Call::Deserialize(slot, damage)
-        }
+        0..6 => Call::GetState(slot),
+        6..11 => Call::SetState(slot),
+        11 | 12 => Call::FreeState(slot),
+        13 => Call::StateSize(slot),
+        14..17 => Call::Serialize(slot),
+        _ => Call::Deserialize(slot),
     }
 }
 
 fn status(choices: &mut Choices) -> Call {
     let [real, integer, boolean, string] = Kind::ALL.map(Some);
-    Call::Status(
-        choices.one(&[real, real, boolean, None, integer, string]),
-        choices.one(&[2, 2, 3, 0, 1, 4, u32::MAX]),
-        fault(choices),
-    )
+    let function = choices.one(&[real, real, boolean, None, integer, string]);
+    Call::Status(function, choices.one(&[2, 2, 3, 0, 1, 4, u32::MAX]))
 }
 
 fn input_derivatives(choices: &mut Choices) -> Call {
@@ -239,7 +232,7 @@ fn input_derivatives(choices: &mut Choices) -> Call {
         let rate = value(choices, reference) / LONGEST_STEP;
         (reference, if choices.percent(3) { 2 } else { 1 }, rate)
     });
-    Call::SetInputDerivatives(values.collect(), fault(choices))
+    Call::SetInputDerivatives(values.collect())
 }
 
 fn output_derivatives(choices: &mut Choices) -> Call {
@@ -250,11 +243,11 @@ fn output_derivatives(choices: &mut Choices) -> Call {
         });
         (reference, i32::from(!choices.percent(3)))
     });
-    Call::GetOutputDerivatives(values.collect(), fault(choices))
+    Call::GetOutputDerivatives(values.collect())
 }
 
 fn replay(choices: &mut Choices, now: &Moment) -> Call {
-    let Call::Set(_, values, _) = set(choices, now, Kind::Real) else { return Call::Reset };
+    let Call::Set(_, values) = set(choices, now, Kind::Real) else { return Call::Reset };
     Call::Replay {
         slot: choices.below(SLOTS),
         inputs: values,

@@ -4,7 +4,7 @@
 use relay_contact::fmi2::*;
 
 use crate::api::Api;
-use crate::call::Call;
+use crate::call::{Call, Fault};
 use crate::choices::Choices;
 use crate::description::{DESCRIPTION, Kind};
 use crate::importer::Importer;
@@ -33,11 +33,11 @@ pub const SPECIMENS: [&[(Kind, &str, f64)]; 8] = [
 /// The serialized state of a contact under sine excitation that has opened.
 pub fn specimen(api: &Api, parameters: &[(Kind, &str, f64)]) -> Vec<u8> {
     let parameters =
-        parameters.iter().map(|&(kind, name, value)| Call::set(kind, vec![(DESCRIPTION.reference(name), value)]));
+        parameters.iter().map(|&(kind, name, value)| Call::Set(kind, vec![(DESCRIPTION.reference(name), value)]));
     let [excitation, amplitude, enter, exit] = Call::shaken(400.0);
     let mut judge = Judge::new(api);
     let steps = [1e-3, 1.3e-6, 1.3e-6].map(Call::step);
-    let bytes = [Call::save(0), Call::serialize(0)];
+    let bytes = [Call::GetState(0), Call::Serialize(0)];
     let calls: Vec<_> =
         [excitation, amplitude].into_iter().chain(parameters).chain([enter, exit]).chain(steps).chain(bytes).collect();
     judge.run(&calls).expect("the specimen runs");
@@ -111,24 +111,24 @@ pub enum Outcome {
 pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
     let mut importer = Importer::new(api);
     *importer.bytes(0) = bytes.to_vec();
-    if answer(&mut importer, &Call::deserialize(0), 0.0)?.0 != fmi2OK {
+    if answer(&mut importer, &Call::Deserialize(0), 0.0)?.0 != fmi2OK {
         return Ok(Outcome::NotRead);
     }
-    if answer(&mut importer, &Call::restore(0), 0.0)?.0 != fmi2OK {
+    if answer(&mut importer, &Call::SetState(0), 0.0)?.0 != fmi2OK {
         return Ok(Outcome::NotSet);
     }
     for step in 0..=steps {
         // Steps must start at the time of the instance.
-        let (_, time) = answer(&mut importer, &Call::time(), 0.0)?;
+        let (_, time) = answer(&mut importer, &Call::TIME, 0.0)?;
         let time = time.first().copied().unwrap_or(f64::NAN);
         for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
-            answer(&mut importer, &Call::get(kind, DESCRIPTION.outputs(kind)), time)?;
+            answer(&mut importer, &Call::Get(kind, DESCRIPTION.outputs(kind)), time)?;
         }
         if step < steps && answer(&mut importer, &Call::step(1e-5), time)?.0 != fmi2OK {
             return Ok(Outcome::StepFailed);
         }
     }
-    for call in [Call::save(1), Call::serialize(1), Call::Reset] {
+    for call in [Call::GetState(1), Call::Serialize(1), Call::Reset] {
         if answer(&mut importer, &call, 0.0)?.0 != fmi2OK {
             return Err(format!("{call:?} is rejected"));
         }
@@ -137,7 +137,7 @@ pub fn meet(api: &Api, bytes: &[u8], steps: u32) -> Result<Outcome, String> {
 }
 
 fn answer(importer: &mut Importer, call: &Call, time: f64) -> Result<(fmi2Status, Vec<f64>), String> {
-    let answer = importer.make(call, time);
+    let answer = importer.make(call, Fault::None, time);
     let panics = |message: &&testing::log::Message| message.text.contains("internal error");
     if let Some(message) = importer.messages().iter().find(panics) {
         return Err(format!("{call:?}: {}", message.text));

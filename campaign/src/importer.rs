@@ -52,18 +52,18 @@ impl<'a> Importer<'a> {
 
     /// Makes a call. `time` is the time of the instance.
     #[allow(clippy::too_many_lines)] // one line a function
-    pub fn make(&mut self, call: &Call, time: f64) -> Answer {
+    pub fn make(&mut self, call: &Call, fault: Fault, time: f64) -> Answer {
         let (api, c) = (self.api, self.component);
         let status = unsafe {
             match call {
-                Call::SetDebugLogging(on, categories, fault) => {
+                Call::SetDebugLogging(on, categories) => {
                     let texts: Vec<_> = categories
                         .iter()
                         .map(|text| text.as_ref().map(|text| CString::new(text.as_str()).unwrap_or_default()))
                         .collect();
                     let pointers: Vec<_> =
                         texts.iter().map(|text| text.as_ref().map_or(ptr::null(), |text| text.as_ptr())).collect();
-                    let (_, pointer, count) = arguments(*fault, &pointers, &pointers);
+                    let (_, pointer, count) = arguments(fault, &pointers, &pointers);
                     (api.fmi2SetDebugLogging)(c, (*on).into(), count, pointer)
                 }
                 Call::SetupExperiment(tolerance, start, stop) => (api.fmi2SetupExperiment)(
@@ -84,14 +84,14 @@ impl<'a> Importer<'a> {
                     self.component = instantiate(api, &self.log);
                     if self.component.is_null() { fmi2Error } else { fmi2OK }
                 }
-                Call::Get(kind, references, fault) => return self.get(*kind, references, *fault),
-                Call::Set(kind, values, fault) => self.set(*kind, values, *fault),
-                Call::GetState(slot, fault)
-                | Call::SetState(slot, fault)
-                | Call::FreeState(slot, fault)
-                | Call::StateSize(slot, fault)
-                | Call::Serialize(slot, fault)
-                | Call::Deserialize(slot, fault) => return self.state_call(call, *slot, *fault),
+                Call::Get(kind, references) => return self.get(*kind, references, fault),
+                Call::Set(kind, values) => self.set(*kind, values, fault),
+                Call::GetState(slot)
+                | Call::SetState(slot)
+                | Call::FreeState(slot)
+                | Call::StateSize(slot)
+                | Call::Serialize(slot)
+                | Call::Deserialize(slot) => return self.state_call(call, *slot, fault),
                 Call::DirectionalDerivative => {
                     let (known, unknown) = (DESCRIPTION.variables[0].reference, DESCRIPTION.outputs(Kind::Real)[0]);
                     let (change, mut result) = (1.0, 0.0);
@@ -105,24 +105,24 @@ impl<'a> Importer<'a> {
                         &raw mut result,
                     )
                 }
-                Call::SetInputDerivatives(values, fault) => {
+                Call::SetInputDerivatives(values) => {
                     let references: Vec<_> = values.iter().map(|value| value.0).collect();
                     let orders: Vec<_> = values.iter().map(|value| value.1).collect();
                     let numbers: Vec<_> = values.iter().map(|value| value.2).collect();
-                    let (vr, value, count) = arguments(*fault, &references, &numbers);
-                    (api.fmi2SetRealInputDerivatives)(c, vr, count, middle(*fault, &orders), value)
+                    let (vr, value, count) = arguments(fault, &references, &numbers);
+                    (api.fmi2SetRealInputDerivatives)(c, vr, count, middle(fault, &orders), value)
                 }
-                Call::GetOutputDerivatives(values, fault) => {
+                Call::GetOutputDerivatives(values) => {
                     let references: Vec<_> = values.iter().map(|value| value.0).collect();
                     let orders: Vec<_> = values.iter().map(|value| value.1).collect();
                     let mut numbers = vec![f64::NAN; values.len()];
-                    let (vr, value, count) = places(*fault, &references, &mut numbers);
-                    let status = (api.fmi2GetRealOutputDerivatives)(c, vr, count, middle(*fault, &orders), value);
+                    let (vr, value, count) = places(fault, &references, &mut numbers);
+                    let status = (api.fmi2GetRealOutputDerivatives)(c, vr, count, middle(fault, &orders), value);
                     return (status, numbers);
                 }
                 Call::DoStep(point, size) => (api.fmi2DoStep)(c, point.instant(time, *size), *size, fmi2True),
                 Call::CancelStep => (api.fmi2CancelStep)(c),
-                Call::Status(function, kind, fault) => return self.status(*function, *kind, *fault),
+                Call::Status(function, kind) => return self.status(*function, *kind, fault),
                 Call::Replay { .. } => unreachable!("a replay consists of other calls"),
             }
         };

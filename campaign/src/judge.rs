@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use relay_contact::fmi2::*;
 
 use crate::api::Api;
-use crate::call::Call;
+use crate::call::{Call, Fault};
 use crate::description::{DESCRIPTION, Kind, Role};
 use crate::importer::{Answer, Importer};
 use crate::life_cycle::{LifeCycle, of_kind};
@@ -32,29 +32,36 @@ impl<'a> Judge<'a> {
         calls.into_iter().try_for_each(|call| self.call(call))
     }
 
+    /// Makes a call without a fault.
     pub fn call(&mut self, call: &Call) -> Result<(), String> {
+        self.call_with(call, Fault::None)
+    }
+
+    pub fn call_with(&mut self, call: &Call, fault: Fault) -> Result<(), String> {
         if let Call::Replay { slot, inputs, steps, size } = call {
             return self.replay(*slot, inputs, *steps, *size);
         }
         self.learn_whether_it_fits(call)?;
-        let ((status, values), warned) = self.answer(call)?;
+        let ((status, values), warned) = self.answer(call, fault)?;
         if status == fmi2OK {
             self.check_values(call, &values)?;
         }
-        self.life.follow(call, status, warned);
+        self.life.follow(call, fault, status, warned);
         self.check_state(call, status)
     }
 
     /// Status and values, and whether a warning was logged.
-    fn answer(&mut self, call: &Call) -> Result<(Answer, bool), String> {
-        let verdict = self.life.verdict(call);
-        let (status, values) = self.importer.make(call, self.life.now.time);
+    fn answer(&mut self, call: &Call, fault: Fault) -> Result<(Answer, bool), String> {
+        let verdict = self.life.verdict(call, fault);
+        let (status, values) = self.importer.make(call, fault, self.life.now.time);
         self.calls += 1;
         self.met.insert(call.function());
         let messages = self.importer.messages();
         if !verdict.statuses().contains(&status) {
             let phase = self.life.now.phase;
-            return Err(format!("{call:?} in {phase:?}: status {status}, expected {verdict:?}; {messages:?}"));
+            return Err(format!(
+                "{call:?} ({fault:?}) in {phase:?}: status {status}, expected {verdict:?}; {messages:?}"
+            ));
         }
         let function = call.function();
         let (logged, category, shown) = match status {
@@ -81,17 +88,17 @@ impl<'a> Judge<'a> {
         if right {
             Ok(((status, values), status == fmi2OK && !about_status.is_empty()))
         } else {
-            Err(format!("{call:?}: status {status}, but the messages are {messages:?} (shown: {shown})"))
+            Err(format!("{call:?} ({fault:?}): status {status}, but the messages are {messages:?} (shown: {shown})"))
         }
     }
 
     /// If outputs can be read in Initialization Mode, initialisation must succeed, and vice versa.
     fn learn_whether_it_fits(&mut self, call: &Call) -> Result<(), String> {
-        let asks = matches!(call, Call::Get(_, references, _) if references.len() > 1);
+        let asks = matches!(call, Call::Get(_, references) if references.len() > 1);
         let unknown = !self.life.now.computed && self.life.now.fits != Some(false);
         if asks && unknown && self.life.now.phase == Phase::InitializationMode {
             let one = DESCRIPTION.outputs(Kind::Real)[0];
-            self.call(&Call::get(Kind::Real, vec![one]))?;
+            self.call(&Call::Get(Kind::Real, vec![one]))?;
         }
         Ok(())
     }
@@ -99,7 +106,7 @@ impl<'a> Judge<'a> {
     fn check_values(&self, call: &Call, values: &[f64]) -> Result<(), String> {
         let now = &self.life.now;
         match call {
-            Call::Get(kind, references, _) => {
+            Call::Get(kind, references) => {
                 for (&reference, &value) in references.iter().zip(values) {
                     let known = of_kind(*kind, reference).is_some_and(|variable| variable.role != Role::Output);
                     if known && value.to_bits() != now.value(reference).to_bits() {
@@ -142,7 +149,7 @@ impl<'a> Judge<'a> {
             self.life.now.outputs = Some(outputs);
         }
         if matches!(call, Call::DoStep(..)) && status == fmi2OK {
-            self.call(&Call::time())?;
+            self.call(&Call::TIME)?;
         }
         let sets = match call {
             Call::SetState(..) | Call::Reset => status == fmi2OK,
@@ -153,7 +160,7 @@ impl<'a> Judge<'a> {
             for kind in Kind::ALL {
                 let settable =
                     DESCRIPTION.references(|variable| variable.role != Role::Output && variable.kind == kind);
-                self.call(&Call::get(kind, settable))?;
+                self.call(&Call::Get(kind, settable))?;
             }
         }
         Ok(())
@@ -163,8 +170,8 @@ impl<'a> Judge<'a> {
     fn outputs(&mut self) -> Result<Vec<u64>, String> {
         let mut bits = Vec::new();
         for kind in [Kind::Real, Kind::Integer, Kind::Boolean] {
-            let get = Call::get(kind, DESCRIPTION.outputs(kind));
-            let ((_, values), _) = self.answer(&get)?;
+            let get = Call::Get(kind, DESCRIPTION.outputs(kind));
+            let ((_, values), _) = self.answer(&get, Fault::None)?;
             self.check_values(&get, &values)?;
             bits.extend(values.iter().map(|value| value.to_bits()));
         }
@@ -173,7 +180,7 @@ impl<'a> Judge<'a> {
 
     fn replay(&mut self, slot: usize, inputs: &[(u32, f64)], steps: u32, size: f64) -> Result<(), String> {
         let mut run = || {
-            self.run(&[Call::restore(slot), Call::set_reals(inputs.to_vec())])?;
+            self.run(&[Call::SetState(slot), Call::set_reals(inputs.to_vec())])?;
             let mut trace = Vec::new();
             for _ in 0..steps {
                 self.call(&Call::step(size))?;

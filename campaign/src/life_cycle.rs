@@ -95,12 +95,12 @@ impl Default for LifeCycle {
 
 impl LifeCycle {
     /// The expected outcome of a call.
-    pub fn verdict(&self, call: &Call) -> Verdict {
+    pub fn verdict(&self, call: &Call, fault: Fault) -> Verdict {
         if !allowed(&call.function(), self.now.phase) {
             return Fail;
         }
         match call {
-            Call::SetDebugLogging(_, categories, fault) => self::logging(categories, *fault),
+            Call::SetDebugLogging(_, categories) => logging(categories, fault),
             Call::SetupExperiment(tolerance, start, stop) => {
                 if !start.is_finite() || stop.is_some_and(|stop| stop.is_nan() || stop < *start) {
                     Fail
@@ -117,18 +117,18 @@ impl LifeCycle {
                 _ => Open,
             },
             Call::EnterInitializationMode | Call::Terminate | Call::Reset | Call::Renew => Accept,
-            Call::Get(kind, references, fault) => {
-                arrays(*fault, references.len()).unwrap_or_else(|| self.get(*kind, references))
+            Call::Get(kind, references) => {
+                arrays(fault, references.len()).unwrap_or_else(|| self.get(*kind, references))
             }
-            Call::Set(kind, values, fault) => arrays(*fault, values.len()).unwrap_or_else(|| self.set(*kind, values)),
+            Call::Set(kind, values) => arrays(fault, values.len()).unwrap_or_else(|| self.set(*kind, values)),
             Call::DoStep(point, size) => self.step(*point, *size),
-            Call::Status(function, kind, fault) => match (fault, function, kind) {
+            Call::Status(function, kind) => match (fault, function, kind) {
                 (Fault::LastNull | Fault::Misaligned, ..) => Fail,
                 (_, Some(Kind::Real), 2) | (_, Some(Kind::Boolean), 3) => Accept,
                 _ => Discard,
             },
             Call::DirectionalDerivative => Refuse,
-            Call::SetInputDerivatives(values, fault) => {
+            Call::SetInputDerivatives(values) => {
                 let judge = |&(reference, order, value): &(u32, i32, f64)| match continuous_input(reference) {
                     true if order == 1 && value.is_finite() => Accept,
                     true if order == 1 => Discard,
@@ -136,12 +136,12 @@ impl LifeCycle {
                     _ => Fail,
                 };
                 let verdict =
-                    three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)));
+                    three_arrays(fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)));
                 let higher = values.iter().any(|&(_, order, _)| order > 1);
                 // The first time.
                 if verdict == Accept && higher { AcceptOrRemark } else { verdict }
             }
-            Call::GetOutputDerivatives(values, fault) => {
+            Call::GetOutputDerivatives(values) => {
                 let judge = |&(reference, order): &(u32, i32)| {
                     if of_kind(Kind::Real, reference).is_some_and(|variable| variable.role == Role::Output)
                         && order == 1
@@ -152,18 +152,16 @@ impl LifeCycle {
                         Fail
                     }
                 };
-                three_arrays(*fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
+                three_arrays(fault, values.len()).unwrap_or_else(|| first_wrong(values.iter().map(judge)))
             }
             Call::CancelStep => Fail,
-            Call::GetState(_, fault) => no_fault(*fault, &[Fault::FirstNull, Fault::Foreign]),
-            Call::FreeState(_, fault) => no_fault(*fault, &[Fault::Foreign]),
-            Call::SetState(slot, fault) => self.held(*slot, *fault, &[]),
-            Call::StateSize(slot, fault) => self.held(*slot, *fault, &[Fault::LastNull]),
-            Call::Serialize(slot, fault) => {
-                self.held(*slot, *fault, &[Fault::LastNull, Fault::Endless, Fault::NullAndEndless])
-            }
-            // Anything wrong but what concerns other pointers.
-            Call::Deserialize(slot, fault) => match fault {
+            Call::GetState(_) => no_fault(fault, &[Fault::FirstNull, Fault::Foreign]),
+            Call::FreeState(_) => no_fault(fault, &[Fault::Foreign]),
+            Call::SetState(slot) => self.held(*slot, fault, &[]),
+            Call::StateSize(slot) => self.held(*slot, fault, &[Fault::LastNull]),
+            Call::Serialize(slot) => self.held(*slot, fault, &[Fault::LastNull, Fault::Endless, Fault::NullAndEndless]),
+            Call::Deserialize(slot) => match fault {
+                // The other faults concern it.
                 Fault::None | Fault::MiddleNull | Fault::Misaligned if self.written[*slot].is_some() => Accept,
                 _ => Fail,
             },
@@ -239,10 +237,10 @@ impl LifeCycle {
 
     /// Updates the expected state after the call returned `status`, which the verdict allows.
     /// `warned`: with a warning in the log.
-    pub fn follow(&mut self, call: &Call, status: fmi2Status, warned: bool) {
-        let verdict = self.verdict(call);
+    pub fn follow(&mut self, call: &Call, fault: Fault, status: fmi2Status, warned: bool) {
+        let verdict = self.verdict(call, fault);
         let now = &mut self.now;
-        if let (Call::Get(kind, references, _), InitializationMode) = (call, now.phase) {
+        if let (Call::Get(kind, references), InitializationMode) = (call, now.phase) {
             let reads_output = references
                 .iter()
                 .any(|&reference| of_kind(*kind, reference).is_some_and(|variable| variable.role == Role::Output));
@@ -261,7 +259,7 @@ impl LifeCycle {
             return;
         }
         match call {
-            Call::SetDebugLogging(on, categories, _) if verdict != Remark => {
+            Call::SetDebugLogging(on, categories) if verdict != Remark => {
                 let named = |name: &str| categories.iter().flatten().any(|category| category == name);
                 let (errors, warnings) = (named("logStatusError"), named("logStatusWarning"));
                 (self.errors, self.warnings) = match (on, categories.is_empty()) {
@@ -285,7 +283,7 @@ impl LifeCycle {
                 (self.errors, self.warnings, self.warned) = (true, true, false);
             }
             Call::Renew => *self = Self { written: std::mem::take(&mut self.written), ..Self::default() },
-            Call::Set(kind, values, _) => {
+            Call::Set(kind, values) => {
                 for &(reference, value) in values {
                     if let Some(position) = DESCRIPTION.position(reference) {
                         now.values[position] = as_held(*kind, value);
@@ -295,7 +293,7 @@ impl LifeCycle {
                     (now.fits, now.computed) = (None, false);
                 }
             }
-            Call::SetInputDerivatives(values, _) => {
+            Call::SetInputDerivatives(values) => {
                 for &(reference, _, rate) in values.iter().filter(|(_, order, _)| *order == 1) {
                     if let Some(position) = DESCRIPTION.position(reference) {
                         now.rates[position] = rate;
@@ -312,15 +310,15 @@ impl LifeCycle {
                 self.now.extreme |= self.now.pushed_hard();
                 self.now.rates.fill(0.0);
             }
-            Call::GetState(slot, _) => self.saved[*slot] = Some(now.clone()),
-            Call::SetState(slot, _) => {
+            Call::GetState(slot) => self.saved[*slot] = Some(now.clone()),
+            Call::SetState(slot) => {
                 if let Some(moment) = &self.saved[*slot] {
                     *now = moment.clone();
                 }
             }
-            Call::FreeState(slot, fault) if *fault != Fault::FirstNull => self.saved[*slot] = None,
-            Call::Serialize(slot, _) => self.written[*slot].clone_from(&self.saved[*slot]),
-            Call::Deserialize(slot, ..) => self.saved[*slot].clone_from(&self.written[*slot]),
+            Call::FreeState(slot) if fault != Fault::FirstNull => self.saved[*slot] = None,
+            Call::Serialize(slot) => self.written[*slot].clone_from(&self.saved[*slot]),
+            Call::Deserialize(slot) => self.saved[*slot].clone_from(&self.written[*slot]),
             _ => {}
         }
     }

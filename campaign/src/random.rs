@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use crate::api::Api;
-use crate::call::Call;
+use crate::call::{Call, Fault};
 use crate::choices::{Choices, bytes};
 use crate::draw;
 use crate::judge::Judge;
@@ -29,12 +29,12 @@ pub fn sequence(api: &Api, bytes: &[u8]) -> Result<u64, String> {
     let mut choices = Choices::new(bytes);
     let mut made = Vec::new();
     while !choices.is_empty() {
-        let call = draw::call(&mut choices, &judge.life.now);
-        made.push(call.clone());
-        if let Err(reason) = judge.call(&call) {
+        let (call, fault) = draw::call(&mut choices, &judge.life.now);
+        made.push((call.clone(), fault));
+        if let Err(reason) = judge.call_with(&call, fault) {
             drop(judge);
             let (calls, reason) = shortened(api, made, reason);
-            let calls: Vec<_> = calls.iter().map(|call| format!("  {call:?}")).collect();
+            let calls: Vec<_> = calls.iter().map(|(call, fault)| format!("  {call:?} ({fault:?})")).collect();
             return Err(format!("{reason}\nafter the calls\n{}", calls.join("\n")));
         }
     }
@@ -42,15 +42,16 @@ pub fn sequence(api: &Api, bytes: &[u8]) -> Result<u64, String> {
 }
 
 /// Makes the calls on a new instance.
-pub fn run(api: &Api, calls: &[Call]) -> Result<(), String> {
-    Judge::new(api).run(calls)
+fn run(api: &Api, calls: &[(Call, Fault)]) -> Result<(), String> {
+    let mut judge = Judge::new(api);
+    calls.iter().try_for_each(|(call, fault)| judge.call_with(call, *fault))
 }
 
 /// Time limit of the search for a shorter sequence.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Removes calls that are not needed for the failure: halves first, single calls last.
-fn shortened(api: &Api, mut calls: Vec<Call>, mut reason: String) -> (Vec<Call>, String) {
+fn shortened(api: &Api, mut calls: Vec<(Call, Fault)>, mut reason: String) -> (Vec<(Call, Fault)>, String) {
     let start = Instant::now();
     let mut piece = calls.len().div_ceil(2);
     while piece > 0 && start.elapsed() < PATIENCE {

@@ -1,7 +1,7 @@
 //! An instance and its saved states leave nothing allocated behind. Alone in its process, for an allocator that counts.
 
 use campaign::api::Api;
-use campaign::call::{Call, Fault};
+use campaign::call::Call;
 use campaign::judge::Judge;
 use relay_contact::fmi2::fmi2OK;
 use testing::allocator::Counting;
@@ -13,25 +13,24 @@ static ALLOCATOR: Counting = Counting;
 /// Two life cycles: with states saved, read from bytes, saved again and freed or not, an error and a reset.
 fn live(api: &Api) {
     let [enter, exit] = Call::INITIALISE;
-    let (slot, fault) = (1, Fault::None);
     let life = [
         enter.clone(),
         exit.clone(),
         Call::step(1e-5),
-        Call::save(0),
-        Call::save(slot),
-        Call::serialize(0),
-        Call::deserialize(2),
-        Call::save(2),
-        Call::FreeState(slot, fault),
+        Call::GetState(0),
+        Call::GetState(1),
+        Call::Serialize(0),
+        Call::Deserialize(2),
+        Call::GetState(2),
+        Call::FreeState(1),
         Call::step(-1.0),
-        Call::restore(0),
+        Call::SetState(0),
         Call::step(1e-5),
         Call::Reset,
         Call::Renew,
         enter,
         exit,
-        Call::save(0),
+        Call::GetState(0),
     ];
     Judge::new(api).run(&life).unwrap();
 }

@@ -4,7 +4,7 @@
 //! (of the library file beside this program) or `library` (the same steps without C).
 
 use campaign::api::LIBRARY;
-use campaign::call::Call;
+use campaign::call::{Call, Fault};
 use campaign::description::DESCRIPTION;
 use campaign::importer::Importer;
 use relay_contact::fmi2::{fmi2OK, fmi2True};
@@ -53,7 +53,7 @@ fn through_c(plan: &[(f64, f64)]) -> f64 {
     let api = &*LIBRARY;
     let mut importer = Importer::new(api);
     for call in Call::shaken(AMPLITUDE) {
-        assert_eq!(importer.make(&call, 0.0).0, fmi2OK);
+        assert_eq!(importer.make(&call, Fault::None, 0.0).0, fmi2OK);
     }
     let (c, input, output) =
         (importer.component, DESCRIPTION.reference("base.acceleration"), DESCRIPTION.reference("contact.force"));
