@@ -1,7 +1,6 @@
 //! SUNDIALS CVODE by a C program, `sundials/cvode.c`: BDF, dense analytic Jacobian, root finding, restart at events.
 //!
-//! The absolute tolerance is the tolerance in units of [`Problem::scales`], the relative one [`Problem::relative`]
-//! times it.
+//! The absolute tolerance is [`Problem::absolute`], the relative one [`Problem::relative`] times the tolerance.
 
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -16,12 +15,14 @@ use crate::problem::Problem;
 /// The program, if it could be compiled.
 pub struct Cvode(Result<PathBuf, Failure>);
 
-impl Cvode {
+impl Default for Cvode {
     /// Compiles the program against the SUNDIALS library of the system.
-    pub fn new() -> Self {
+    fn default() -> Self {
         Self(compile())
     }
+}
 
+impl Cvode {
     /// What the program answers: a key and its numbers on each line.
     fn ask(&self, question: &str) -> Result<String, Failure> {
         let program = self.0.as_ref().map_err(Clone::clone)?;
@@ -44,12 +45,6 @@ impl Cvode {
         let problem = crate::scenes::paper().ok()?;
         let answer = self.ask(&question(&problem, 1e-2).ok()?).ok()?;
         line(&answer, "version ").map(ToOwned::to_owned)
-    }
-}
-
-impl Default for Cvode {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -96,9 +91,8 @@ fn question(problem: &Problem, tolerance: f64) -> Result<String, Failure> {
     let (amplitude, omega, phase) = problem.sine();
     line(&[model.preload.force, model.preload.indentation]);
     line(&[amplitude, omega, phase, problem.support_rate]);
-    let absolute: Vec<f64> = problem.scales().iter().map(|scale| tolerance * scale).collect();
     line(&[problem.relative * tolerance]);
-    line(&absolute);
+    line(&problem.absolute(tolerance));
     line(&[problem.end, f64::from(problem.cells), BUDGET, SHORT]);
     Ok(text)
 }

@@ -1,13 +1,11 @@
 //! The Rust library diffsol: BDF of orders 1 to 5, dense, with analytic Jacobian-vector products and root finding.
 //!
-//! The absolute tolerance is the tolerance in units of [`Problem::scales`], the relative one [`Problem::relative`]
-//! times it. At an opening or a closing the solver is restarted on the other branch.
+//! The absolute tolerance is [`Problem::absolute`], the relative one [`Problem::relative`] times the tolerance. At an opening or a
+//! closing the solver is restarted on the other branch.
 
 use cpu_time::ThreadTime;
 
-use ::diffsol::{
-    DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason,
-};
+use ::diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason};
 
 use crate::integrator::{BUDGET, Failure, Integrator, Run};
 use crate::problem::Problem;
@@ -63,13 +61,11 @@ impl Diffsol {
         clock: ThreadTime,
         run: &mut Run,
     ) -> Result<Option<Start>, DiffsolError> {
-        type Lu = NalgebraLU<f64>;
         let closed = from.closed;
-        let absolute: Vec<f64> = problem.scales().iter().map(|scale| tolerance * scale).collect();
         let mut ode = OdeBuilder::<NalgebraMat<f64>>::new()
             .t0(from.time)
             .rtol(problem.relative * tolerance)
-            .atol(absolute)
+            .atol(problem.absolute(tolerance))
             .rhs_implicit(
                 |state, _, time, derivative| problem.derivative(closed, time, state, derivative),
                 |state, _, time, direction, product| problem.jacobian_times(closed, time, state, direction, product),
@@ -85,53 +81,36 @@ impl Diffsol {
             .build()?;
         // The first steps after an impact are short.
         ode.ode_options.min_timestep = 1e-20;
-        drive(problem, closed, ode.bdf::<Lu>()?, clock, run)
-    }
-}
-
-fn drive<'a, E, S>(
-    problem: &Problem,
-    closed: bool,
-    mut solver: S,
-    clock: ThreadTime,
-    run: &mut Run,
-) -> Result<Option<Start>, DiffsolError>
-where
-    E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-    S: OdeSolverMethod<'a, E>,
-{
-    let mut next = None;
-    let mut cell = u32::try_from(run.forces.len()).unwrap_or(u32::MAX);
-    let mut steps = 0_u32;
-    while cell <= problem.cells && next.is_none() {
-        // Reading the processor time costs as much as half a step, so not every step.
-        steps += 1;
-        if steps.is_multiple_of(1000) && clock.elapsed().as_secs_f64() > BUDGET {
-            break;
-        }
-        let mut reached = f64::INFINITY;
-        if let OdeSolverStopReason::RootFound(root, _) = solver.step()? {
-            // A branch starts at zero engagement up to rounding: crossing into the branch does not end it.
-            let state = solver.state();
-            if (problem.engagement(state.t, state.y.batch_as_slice(0)) > 0.0) != closed {
-                reached = root;
+        let mut solver = ode.bdf::<NalgebraLU<f64>>()?;
+        let mut cell = u32::try_from(run.forces.len()).unwrap_or(u32::MAX);
+        let mut steps = 0_u32;
+        while cell <= problem.cells {
+            // Reading the processor time costs as much as half a step, so not every step.
+            steps += 1;
+            if steps.is_multiple_of(1000) && clock.elapsed().as_secs_f64() > BUDGET {
+                break;
+            }
+            let mut reached = f64::INFINITY;
+            if let OdeSolverStopReason::RootFound(root, _) = solver.step()? {
+                // A branch starts at zero engagement up to rounding: crossing into the branch does not end it.
+                let state = solver.state();
+                if (problem.engagement(state.t, state.y.batch_as_slice(0)) > 0.0) != closed {
+                    reached = root;
+                }
+            }
+            let end = reached.min(solver.state().t);
+            while cell <= problem.cells && problem.instant(cell) <= end {
+                let time = problem.instant(cell);
+                let state = solver.interpolate(time)?;
+                run.forces.push(problem.force(closed, time, state.batch_as_slice(0)));
+                cell += 1;
+            }
+            if reached.is_finite() && cell <= problem.cells {
+                run.events.push(reached);
+                let state = solver.interpolate(reached)?.batch_as_slice(0).to_vec();
+                return Ok(Some(Start { time: reached, state, closed: !closed }));
             }
         }
-        let end = reached.min(solver.state().t);
-        while cell <= problem.cells && problem.instant(cell) <= end {
-            let time = problem.instant(cell);
-            let state = solver.interpolate(time)?;
-            run.forces.push(problem.force(closed, time, state.batch_as_slice(0)));
-            cell += 1;
-        }
-        if reached.is_finite() && cell <= problem.cells {
-            run.events.push(reached);
-            next = Some(Start {
-                time: reached,
-                state: solver.interpolate(reached)?.batch_as_slice(0).to_vec(),
-                closed: !closed,
-            });
-        }
+        Ok(None)
     }
-    Ok(next)
 }

@@ -19,7 +19,7 @@ pub fn description() -> String {
     let rustc = printed("rustc", "--version").unwrap_or_else(|| "rustc".to_owned());
     let date = printed("date", "+%Y-%m-%d").unwrap_or_else(|| "unknown date".to_owned());
     let sundials =
-        Cvode::new().version().map_or("without SUNDIALS".to_owned(), |version| format!("SUNDIALS {version}"));
+        Cvode::default().version().map_or("without SUNDIALS".to_owned(), |version| format!("SUNDIALS {version}"));
     let diffsol = locked_version("diffsol").unwrap_or_default();
     let own = env!("CARGO_PKG_VERSION");
     format!("{date}, {processor}, {cores} cores, one used; {rustc}; relay-contact {own}, diffsol {diffsol}, {sundials}")

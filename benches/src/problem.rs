@@ -159,13 +159,13 @@ impl Problem {
         }
     }
 
-    /// Absolute tolerances of the state per tolerance of the force relative to the force scale: what moves the tip by the
+    /// Absolute tolerances of the state for a tolerance of the force relative to the force scale: what moves the tip by the
     /// deviation that the contact's stiffness, or its damping, turns into that force, shared by nobody.
-    pub fn scales(&self) -> Vec<f64> {
+    pub fn absolute(&self, tolerance: f64) -> Vec<f64> {
         let stiffness = self.model.law.tangent_stiffness(self.model.force_scale);
         let displacement = self.model.force_scale / stiffness;
         let velocity = displacement / self.model.law.damping();
-        let of = |scale: f64| self.model.modes.iter().map(move |mode| scale / mode.tip.abs());
+        let of = |scale: f64| self.model.modes.iter().map(move |mode| tolerance * (scale / mode.tip.abs()));
         of(displacement).chain(of(velocity)).collect()
     }
 }

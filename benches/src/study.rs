@@ -28,7 +28,7 @@ const LONG: f64 = 0.5;
 
 /// The integrators that the component is compared with.
 fn peers() -> [Rc<dyn Integrator>; 2] {
-    [Rc::new(Cvode::new()), Rc::new(Diffsol)]
+    [Rc::new(Cvode::default()), Rc::new(Diffsol)]
 }
 
 /// One integrator with one tolerance.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::env;
-use std::env::consts::{ARCH, DLL_EXTENSION, DLL_PREFIX, DLL_SUFFIX, OS};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 
 use crate::commands::{cargo, is_there, read, root, run, write};
@@ -10,6 +10,7 @@ use anyhow::{Result, bail};
 use relay_contact::C_HEADER;
 
 use crate::package::{Files, pack};
+use crate::release::platform::Platform;
 use crate::variant::Variant;
 use crate::{bill, documentation, licences, linked};
 
@@ -27,12 +28,12 @@ pub fn build() -> Result<PathBuf> {
 /// `lib` and its header to `include`.
 pub fn build_variant(variant: &Variant) -> Result<PathBuf> {
     build_library()?;
-    let folder = platform()?;
+    let host = Platform::host()?;
     let name = format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}");
     let library = read(linked::metadata()?.target_directory.as_std_path().join("release").join(&name))?;
     write("dist/include/relay_contact.h", C_HEADER)?;
     write(format!("dist/lib/{name}"), &library)?;
-    let libraries = [(folder, DLL_EXTENSION, library)];
+    let libraries = [(host.folder, host.extension, library)];
     let files = files(variant, libraries, Path::new("rustc"), &[], Files::new())?;
     write(format!("dist/{}.fmu", variant.name), &pack(&files)?)
 }
@@ -106,16 +107,6 @@ pub fn files<'a>(
         files.insert(format!("binaries/{folder}/RelayContact.{extension}"), library);
     }
     Ok(files)
-}
-
-/// The folder of this machine's platform in FMI 2.0.
-fn platform() -> Result<&'static str> {
-    match (OS, ARCH) {
-        ("linux", "x86_64") => Ok("linux64"),
-        ("windows", "x86_64") => Ok("win64"),
-        ("macos", _) => Ok("darwin64"),
-        _ => bail!("FMI 2.0 defines no folder for this platform, only for Linux and Windows on 64-bit x86, and macOS"),
-    }
 }
 
 #[cfg(test)]

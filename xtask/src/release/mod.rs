@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
         }
     }
     ensure!(!libraries.is_empty(), "no platform could be built");
-    let runs_here = libraries.iter().any(|(platform, _)| trial::is_host(platform));
+    let runs_here = libraries.iter().any(|(platform, _)| platform.is_host());
     let full = packed(&libraries, &tools)?;
     let archive = write("dist/release/RelayContact.fmu", &full)?;
     write("dist/release/SHA256SUMS", sum("RelayContact.fmu", &full))?;

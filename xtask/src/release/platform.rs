@@ -1,5 +1,9 @@
 //! The platforms of the full archive.
 
+use std::env::consts::{ARCH, OS};
+
+use anyhow::{Context, Result};
+
 use super::check::processor;
 
 /// Oldest C library of Linux on which libraries load.
@@ -19,6 +23,20 @@ pub struct Platform {
 }
 
 impl Platform {
+    /// That of this machine.
+    pub fn host() -> Result<&'static Self> {
+        PLATFORMS
+            .iter()
+            .find(|platform| platform.is_host())
+            .context("no library is made for platforms such as this machine's")
+    }
+
+    /// Whether this machine is one of the platform.
+    pub fn is_host(&self) -> bool {
+        let system = if OS == "macos" { "darwin" } else { OS };
+        self.targets.iter().any(|target| target.starts_with(ARCH) && target.contains(system))
+    }
+
     /// The Python package that carries its library, by the platform tag that pip and the index of Python packages know.
     pub fn wheel(&self) -> String {
         match (self.extension, self.targets) {

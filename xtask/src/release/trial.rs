@@ -4,7 +4,6 @@
 //! steps back; `paper_scene.c` loads the library as an importer does and runs the published 1 kHz case. The forces of that run
 //! are compared with those of the library in Rust on this machine.
 
-use std::env::consts::{ARCH, OS};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -93,7 +92,7 @@ impl Runner {
             start: start.iter().map(Into::into).collect(),
         };
         match platform.folder {
-            _ if is_host(platform) => {
+            _ if platform.is_host() => {
                 ensure!(is_there("cc"), missing("cc", "gcc libc6-dev"));
                 Ok(Self { compiler: vec!["cc".into()], start: Vec::new() })
             }
@@ -112,13 +111,6 @@ impl Runner {
             _ => bail!("it runs only on macOS"),
         }
     }
-}
-
-/// Whether this machine is one of the platform.
-pub fn is_host(platform: &Platform) -> bool {
-    let system = if OS == "macos" { "darwin" } else { OS };
-    let mut targets = platform.targets.iter();
-    targets.any(|target| target.starts_with(ARCH) && target.contains(system))
 }
 
 fn missing(what: &str, packages: &str) -> String {
@@ -203,13 +195,11 @@ fn words(words: &[OsString]) -> Result<Command> {
 mod tests {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 
-    use super::super::platform::PLATFORMS;
     use super::*;
 
     #[test]
     fn here_the_library_gives_the_forces_of_rust() -> Result<()> {
-        let mut hosts = PLATFORMS.iter().filter(|platform| is_host(platform));
-        let host = hosts.next().context("no library is released for this machine")?;
+        let host = Platform::host()?;
         // Built by cargo beside the tests.
         let library = std::env::current_exe()?.with_file_name(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}"));
         let result = run(host, &library, Path::new("no zig"))?;
