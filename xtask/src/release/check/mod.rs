@@ -11,6 +11,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use crate::commands::sysroot;
+use crate::linked::metadata;
 use anyhow::Result;
 use relay_contact::variables;
 
@@ -18,10 +19,8 @@ pub use self::macho::join;
 pub use self::pe::without_time;
 use self::report::Report;
 pub use self::report::{declared, processor};
-use crate::linked::metadata;
 
-/// Size limit of a library, in bytes. The step is compiled for each number of stages, on x86
-/// for two instruction sets.
+/// Size limit of a library, in bytes. The step is compiled for each number of stages, on x86 for two instruction sets.
 const SIZE: usize = 3_000_000;
 
 /// Checks the library of a target. `private` are folders of this machine whose paths must not be inside, see
