@@ -118,7 +118,7 @@ def simulated(path: Path, threshold: float) -> Interruptions:
 def measured(path: Path, threshold: float) -> Interruptions:
     """Read the interruptions of a measurement."""
     table = tables.read(path, COLUMNS)
-    there = set(table.cells)
+    there = set(table.places)
     begin = next((name for name in ("start", "time") if name in there), "")
     if not begin or not there & {"duration", "resistance"}:
         raise table.wrong("columns: not allowed, allowed are start and duration, or time and resistance")

@@ -158,7 +158,7 @@ def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> 
 
 def text(path: Path) -> Iterator[Channel]:
     """Read columns of numbers: one named time, the others with their units; or acceleration alone."""
-    lines = tables.decoded(path, 2**16).splitlines()[:LOOKED]
+    lines = tables.decoded(path).splitlines()[:LOOKED]
     known: dict[str, Mapping[str, float]] = {}
     for line in lines:
         heads = [tables.parted(cell) for each in tables.SEPARATORS if each in line for cell in line.split(each)]

@@ -49,12 +49,12 @@ def read_table(path: Path) -> dict[str, Array]:
 def input_table(path: Path) -> dict[str, Array]:
     """Read inputs over time as measuring programs export them (`relay_contact.tables`), SI units."""
     table = read_columns(path, INPUTS)
-    there = list(table.cells)
+    there = list(table.places)
     if "time" not in there or len(there) < 2:
         names = ", ".join(there + table.passed)
         allowed = f"time and one or more of {', '.join(name for name in INPUTS if name != 'time')}"
         raise table.wrong(f"columns {names}: not allowed, allowed is {allowed}")
-    if not table.lines:
+    if not table.rows:
         raise table.wrong("no row below the names of the columns")
     table.ascending("time")
     return {name: table[name] for name in there}

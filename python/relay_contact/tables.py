@@ -36,17 +36,15 @@ CELL = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^\])]*)[\])]|\bin\s+(?P
 SETTING = re.compile(r"(#*)([^=:]*)([=:])(.*)")
 """A remark, or a line before the columns, with a name and a text."""
 SEPARATORS, BLANK = ";\t,", ' \t,;"'
-LARGE, BEGIN = 2**20, 2**16  # bytes of a file that is read at once, and of its begin
 ALIKE = 0.75  # of names, from which on one is taken for a slip in the other
 
 Units = Mapping[str, Mapping[str, float]]
 """Columns that are known, with their units in SI; the first is that of a column without one."""
 
 
-def decoded(path: Path, most: int = -1) -> str:
-    """Return the text of a file, or of its begin, in UTF-8, UTF-16 or, where it is neither, Latin-1 as Windows has."""
-    with path.open("rb") as file:
-        data = file.read(most)
+def decoded(path: Path) -> str:
+    """Return the text of a file in UTF-8, UTF-16 or, where it is neither, Latin-1 as Windows has it."""
+    data = path.read_bytes()
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data.decode("utf-16", errors="replace")
     if b"\0" in data[:64]:
@@ -81,24 +79,22 @@ class Table:
 
     path: Path
     known: Units
-    cells: dict[str, list[str]]
-    """By name of the column."""
-    units: dict[str, str]
-    """In which the columns are written; checked when a column is asked for."""
-    passed: list[str]
-    """Names of further columns."""
+    separator: str
+    """Between the cells of a row."""
     head: int
     """Line of the names."""
-    lines: list[int]
-    """Lines of the rows."""
+    rows: dict[int, str]
+    """By their lines."""
     settings: dict[str, tuple[str, int]]
     """Texts by name, with their lines."""
-    remarks: dict[str, tuple[str, int]] = field(default_factory=dict)
+    remarks: dict[str, tuple[str, int]]
     """The same with a colon in place of the equals sign."""
     places: dict[str, int] = field(default_factory=dict)
-    """Of the columns in a row."""
-    written: dict[str, Array] = field(default_factory=dict)
-    """Numbers as they are written, of a large file."""
+    """Of the columns in a row, by name."""
+    units: dict[str, str] = field(default_factory=dict)
+    """In which the columns are written; checked when a column is asked for."""
+    passed: list[str] = field(default_factory=list)
+    """Names of further columns."""
     columns: dict[str, Array] = field(default_factory=dict)
     """Values of those that were asked for, in SI units."""
 
@@ -116,17 +112,25 @@ class Table:
             raise self.wrong(f"column {name}: unit {unit}: not allowed, allowed is {', '.join(allowed)}")
         return unit
 
+    def cells(self, name: str) -> list[str]:
+        """Return the cells of a column."""
+        return [split(row, self.separator)[self.places[name]] for row in self.rows.values()]
+
     def numbers(self, name: str) -> Array:
         """Return the numbers of a column as they are written."""
-        if name in self.written:
-            return self.written[name]
-        plain = [cell.replace(",", ".") for cell in self.cells[name]]
+        if not self.rows:
+            return np.zeros(0)
+        points = (row if self.separator == "," else row.replace(",", ".") for row in self.rows.values())
         try:
-            values = np.array(plain, dtype=float)
+            values = np.loadtxt(points, delimiter=self.separator, usecols=self.places[name], comments=None, ndmin=1)
         except ValueError as error:
-            row = next(n for n, cell in enumerate(plain) if not is_number(cell))
-            text = f"column {name}: {self.cells[name][row] or 'nothing'}: not allowed, allowed is a number"
-            raise self.wrong(text, self.lines[row]) from error
+            # A cell in quotes, or one that is no number.
+            cells = self.cells(name)
+            for line, cell in zip(self.rows, cells, strict=True):
+                if not is_number(cell):
+                    text = f"column {name}: {cell or 'nothing'}: not allowed, allowed is a number"
+                    raise self.wrong(text, line) from error
+            values = np.array([cell.replace(",", ".") for cell in cells], dtype=float)
         self.refuse(name, ~np.isfinite(values), "a finite number")
         return values
 
@@ -134,9 +138,8 @@ class Table:
         """Raise an error for the first row of a column that is bad."""
         if bad.any():
             row = int(bad.argmax())
-            cell = f"{self.written[name][row]:g}" if name in self.written else self.cells[name][row]
-            text = f"column {name}: {cell} {self.unit(name)}: not allowed, allowed is {allowed}"
-            raise self.wrong(text, self.lines[row])
+            text = f"column {name}: {self.cells(name)[row]} {self.unit(name)}: not allowed, allowed is {allowed}"
+            raise self.wrong(text, list(self.rows)[row])
 
     def ascending(self, name: str) -> None:
         """Refuse a column that does not rise from row to row."""
@@ -151,71 +154,37 @@ class Table:
 
 def read(path: Path, known: Units) -> Table:
     """Read the columns of a file that are known."""
-    large = path.stat().st_size > LARGE
-    return (quick(path, known) if large else None) or thorough(path, known)
-
-
-def quick(path: Path, known: Units) -> Table | None:
-    """Read a large file in which nothing but numbers follows the heads of its columns; nothing of another."""
-    # It takes half a second to import, and a small file none.
-    import pandas as pd
-
-    start = decoded(path, BEGIN)
-    begun = thorough(path, known, start[: start.rindex("\n")] if "\n" in start else start)
-    first = begun.lines[0] if begun.lines else 0
-    _, separator = begin(dict(enumerate(start.splitlines(), 1)), known)
-    decimal = "," if separator != "," and any("," in cell for cells in begun.cells.values() for cell in cells) else "."
-    try:
-        frame = pd.read_csv(path, sep=separator, decimal=decimal, header=None, skiprows=first - 1, dtype=float,
-                            skip_blank_lines=False, encoding="utf-8")  # fmt: skip
-    except (ValueError, pd.errors.ParserError, UnicodeDecodeError):
-        return None
-    values = frame.to_numpy()
-    if first == 0 or values.shape[1] != len(begun.cells) + len(begun.passed):
-        return None
-    for name, place in begun.places.items():
-        begun.written[name] = np.ascontiguousarray(values[:, place])
-        if not np.isfinite(begun.written[name]).all():
-            return None
-    begun.lines[:] = range(first, first + len(values))
-    return begun
-
-
-def thorough(path: Path, known: Units, text: str | None = None) -> Table:
-    """Read the columns of a file, or of its begin, that are known."""
-    lines = {number: line for number, line in enumerate((text or decoded(path)).splitlines(), 1) if line.strip(BLANK)}
+    lines = {number: line for number, line in enumerate(decoded(path).splitlines(), 1) if line.strip(BLANK)}
     head, separator = begin(lines, known)
-    texts: dict[str, dict[str, tuple[str, int]]] = {"=": {}, ":": {}}
-    rows: list[tuple[int, list[str]]] = []
+    table = Table(path, known, separator, head, {}, {}, {})
     for number, text in lines.items():
-        if number < head or (number > head and text.strip(BLANK).startswith("#")):
+        if number > head and not text.lstrip(BLANK).startswith("#"):
+            table.rows[number] = text
+        elif number != head and (found := SETTING.match(text.strip(BLANK))) and (found[1] or found[3] == "="):
             # Measuring programs write `name: text` of their own, without #.
-            if (found := SETTING.match(text.strip(BLANK))) and (found[1] or found[3] == "="):
-                name, sign, value = (part.strip(BLANK) for part in found.groups()[1:])
-                texts[sign][name] = value, number
-        elif number > head:
-            rows.append((number, split(text, separator)))
-    table = Table(path, known, {}, {}, [], head, [], texts["="], texts[":"])
+            name, sign, value = (part.strip(BLANK) for part in found.groups()[1:])
+            (table.settings if sign == "=" else table.remarks)[name] = value, number
     if not head:
         raise table.wrong(f"no line with the names of the columns; there may be {', '.join(known)}")
     names = split(lines[head].lstrip(" #"), separator)
-    places = named(table, names)
-    table.places.update(places)
-    if rows and (below := units_below(rows[0][1], table)):
+    name_columns(table, names)
+    first = next(iter(table.rows), head)
+    if below := units_below(split(table.rows.get(first, ""), separator), table):
         for name, unit in below.items():
             if table.units[name] not in ("", unit):
                 text = f"column {name}: unit {unit}: not allowed, allowed is {table.units[name]}, as in its head"
-                raise table.wrong(text, rows[0][0])
+                raise table.wrong(text, first)
         table.units.update(below)
-        del rows[0]
-    for number, cells in rows:
-        filled = max((place + 1 for place, cell in enumerate(cells) if cell), default=0)
-        if filled > len(names) or len(cells) <= max(places.values()):
-            more = "; decimal commas need semicolons or tabs between columns" if filled > len(names) else ""
-            text = f"{filled} values: not allowed, allowed is {len(names)}, one in each column{more}"
-            raise table.wrong(text, number)
-    table.lines.extend(number for number, _ in rows)
-    table.cells.update({name: [cells[place] for _, cells in rows] for name, place in places.items()})
+        del table.rows[first]
+    last = max(table.places.values())
+    for number, text in table.rows.items():
+        if '"' in text or not last <= text.count(separator) < len(names):
+            cells = split(text, separator)
+            filled = max((place + 1 for place, cell in enumerate(cells) if cell), default=0)
+            if filled > len(names) or len(cells) <= last:
+                more = "; decimal commas need semicolons or tabs between columns" if filled > len(names) else ""
+                text = f"{filled} values: not allowed, allowed is {len(names)}, one in each column{more}"
+                raise table.wrong(text, number)
     return table
 
 
@@ -228,7 +197,8 @@ def begin(lines: Mapping[int, str], known: Units) -> tuple[int, str]:
     """Return the line with the most names of columns, and what is between them; the line 0 if there is none."""
     best, found = 0, (0, ",")
     for number, text in lines.items():
-        if not any(name.lower() in text.lower() for name in known):
+        small = text.lower()
+        if not any(name.lower() in small for name in known):
             continue
         for separator in SEPARATORS:
             cells = split(text.lstrip(" #"), separator)
@@ -238,21 +208,19 @@ def begin(lines: Mapping[int, str], known: Units) -> tuple[int, str]:
     return found
 
 
-def named(table: Table, cells: list[str]) -> dict[str, int]:
-    """Return the places of the columns that are known, whose units are kept; a slip in a name is refused."""
-    places: dict[str, int] = {}
+def name_columns(table: Table, cells: list[str]) -> None:
+    """Keep the places and units of the columns that are known; a slip in a name is refused."""
     for place, (name, unit) in enumerate(parted(cell, table.known) for cell in cells):
         if name not in table.known:
             table.passed.append(name)
-        elif name in places:
+        elif name in table.places:
             raise table.wrong(f"column {name}: there twice: not allowed, allowed is once; rename one of them")
         else:
-            places[name], table.units[name] = place, unit
-    absent = [each for each in table.known if each not in places]
+            table.places[name], table.units[name] = place, unit
+    absent = [each for each in table.known if each not in table.places]
     for name in table.passed:
         if meant := difflib.get_close_matches(name, absent, n=1, cutoff=ALIKE):
             raise table.wrong(f"column {name}: unknown; did you mean {meant[0]}?")
-    return places
 
 
 def units_below(cells: list[str], table: Table) -> dict[str, str]:

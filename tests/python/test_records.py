@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from relay_contact import RelayContactError, tables
+from relay_contact import RelayContactError
 from relay_contact.records import read
 
 G = 9.80665
@@ -80,28 +80,17 @@ def test_records_that_tell_nothing_are_refused(tmp_path: Path, rows: str, messag
         read(path)
 
 
-def test_a_large_file_is_read_at_once_and_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "large.csv"
+def test_a_record_is_the_same_in_quotes_and_one_wrong_row_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "long.csv"
     rows = "\n".join(f"{t:.6f};{a:.6f}".replace(".", ",") for t, a in zip(TIME, VALUES, strict=True))
     path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n")
-    (slow,) = read(path)
-    monkeypatch.setattr(tables, "LARGE", 100)
-    monkeypatch.setattr(tables, "BEGIN", 300)
-    thorough: list[int] = []
-    whole = tables.thorough
-
-    def counted(*given: Any) -> Any:  # noqa: ANN401
-        thorough.append(len(given))
-        return whole(*given)
-
-    monkeypatch.setattr(tables, "thorough", counted)
-    (fast,) = read(path)
-    # Its begin alone.
-    assert thorough == [3]
-    assert np.array_equal(fast.time, slow.time)
-    assert fast.acceleration == pytest.approx(slow.acceleration, rel=1e-14)
+    (plain,) = read(path)
+    path.write_text(f'some\n\ntime;a\ns;g\n{rows}\n"50,0";0\n')
+    (quoted,) = read(path)
+    assert np.array_equal(quoted.time, [*plain.time, 50.0])
+    assert np.array_equal(quoted.acceleration, [*plain.acceleration, 0.0])
     path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n5;x\n")
-    with pytest.raises(RelayContactError, match=r"large.csv:405: column a: x: not allowed, allowed is a number"):
+    with pytest.raises(RelayContactError, match=r"long.csv:405: column a: x: not allowed, allowed is a number"):
         read(path)
 
 

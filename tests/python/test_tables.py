@@ -114,7 +114,7 @@ def test_any_bytes_are_read_or_refused(tmp_path: Path) -> None:
         message, values = str(path), np.zeros(0)
         try:
             table = read(path, COLUMNS)
-            values = table["force"] if "force" in table.cells else values
+            values = table["force"] if "force" in table.places else values
         except RelayContactError as error:
             message = str(error)
         assert str(path) in message

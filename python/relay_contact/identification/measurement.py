@@ -92,11 +92,9 @@ def read(path: Path, component: Component, positions: list[str]) -> Measurement:
         sized(table, name, kind == RINGDOWN and name == quantity)
     if kind == RINGDOWN:
         table.ascending("time")
-    if len(table.lines) < FEWEST[kind]:
-        allowed = f"{FEWEST[kind]} or more for a {kind}"
-        raise table.wrong(
-            f"{len(table.lines)} rows: not allowed, allowed is {allowed}", ([table.head, *table.lines])[-1]
-        )
+    if len(table.rows) < FEWEST[kind]:
+        text = f"{len(table.rows)} rows: not allowed, allowed is {FEWEST[kind]} or more for a {kind}"
+        raise table.wrong(text, [table.head, *table.rows][-1])
     for name in (over[0], quantity):
         if kind in (FORCE, RINGDOWN) and np.ptp(table[name]) == 0:
             raise table.wrong(f"column {name}: the same in all rows: not allowed, allowed are values that differ")
@@ -116,7 +114,7 @@ def read(path: Path, component: Component, positions: list[str]) -> Measurement:
 
 def what(table: Table) -> tuple[str, str]:
     """Return what was measured, and the column of its values."""
-    there = set(table.cells)
+    there = set(table.places)
     for kind, (over, either) in KINDS.items():
         measured = [name for name in either if name in there]
         if measured and set(over) <= there:
@@ -124,7 +122,7 @@ def what(table: Table) -> tuple[str, str]:
                 raise table.wrong(f"columns {' and '.join(measured)}: not allowed, allowed is one; rename the other")
             return kind, measured[0]
     known = "; ".join(f"{kind}: {', '.join(over)}, {' or '.join(each)}" for kind, (over, each) in KINDS.items())
-    names = ", ".join([*table.cells, *table.passed])
+    names = ", ".join([*table.places, *table.passed])
     raise table.wrong(f"columns {names}: no measurement that is known; there are {known}")
 
 
