@@ -1,6 +1,5 @@
 """What an assessment showed: a finding for each test, position and model, and all of them as tables."""
 
-import csv
 from dataclasses import field
 from html import escape
 from pathlib import Path
@@ -28,8 +27,6 @@ MARGINS = {name: f"{name} margin" for name in (CONTACT, CORE, STOP, PUSHER)}
 """Columns of tables, by what may fail."""
 CONTACTS = [LEAST[CLOSED], LEAST[OPEN]]
 """Those that are there for every relay."""
-Cells = tuple[list[str], list[dict[str, Any]], dict[str, str]]
-"""Columns of a table, its rows, and the units of the columns."""
 
 
 @dataclass(frozen=True)
@@ -202,16 +199,6 @@ class Assessment:
     @property
     def table(self) -> "pd.DataFrame":
         """A row for each test, position and model, and for each test not run; `attrs["units"]` has the units."""
-        return frame(*self.tested)
-
-    @property
-    def sweeps(self) -> "pd.DataFrame":
-        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
-        return frame(*self.swept)
-
-    @property
-    def tested(self) -> Cells:
-        """Columns, rows and units of the table of tests."""
         rows: list[dict[str, Any]] = []
         units: dict[str, str] = {}
         for tested in self.tests:
@@ -237,11 +224,11 @@ class Assessment:
         known = *MARGINS.values(), *LEAST.values(), "notes"
         others = [name for name in known if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
-        return columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
+        return frame(columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"})
 
     @property
-    def swept(self) -> Cells:
-        """The same of the table of sweeps."""
+    def sweeps(self) -> "pd.DataFrame":
+        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
         rows: list[dict[str, Any]] = []
         for each in (each for tested in self.tests for each in tested.models):
             if each.kind == "sine" and each.judged:
@@ -255,17 +242,14 @@ class Assessment:
         keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *CONTACTS, *others]
         units = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
                  **{LEAST[name]: UNITS[name] for name in LEAST}}  # fmt: skip
-        return keys, rows, units
+        return frame(keys, rows, units)
 
     def write(self) -> None:
         """Write both tables as CSV, with the units in the names of their columns."""
-        for name, (columns, rows, units) in (("qualification.csv", self.tested), ("sweeps.csv", self.swept)):
-            with (self.folder / name).open("w", encoding="utf-8", newline="") as file:
-                lines = csv.writer(file, lineterminator="\n")
-                lines.writerow(f"{column} [{units[column]}]" if column in units else column for column in columns)
-                for row in rows:
-                    cells = [row.get(column) for column in columns]
-                    lines.writerow(f"{cell:.9g}" if isinstance(cell, float) else cell for cell in cells)
+        for name, table in (("qualification.csv", self.table), ("sweeps.csv", self.sweeps)):
+            units = table.attrs["units"]
+            head = [f"{column} [{units[column]}]" if column in units else column for column in table.columns]
+            table.to_csv(self.folder / name, header=head, index=False, float_format="%.9g", lineterminator="\n")
 
     def _repr_html_(self) -> str:
         """Return the page for a notebook, apart from the notebook's own style."""
