@@ -453,5 +453,4 @@ class Contact:
     def step(self, time: float, length: float) -> None:
         """Do a communication step."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=length)
-        if len(self.warnings) > self.told:
-            self.tell()
+        self.tell()

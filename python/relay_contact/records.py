@@ -125,21 +125,20 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
 
 def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> Record:
     """Return a channel, `factor` its unit in SI, with values that are valid and differ, over a time that rises."""
-    name, time, clock = channel.name, channel.time, spelled(channel.clock)
+    where, time, clock = f"{path}: channel {channel.name}", channel.time, spelled(channel.clock)
     values = np.asarray(channel.values, dtype=float) * factor
     if time is None or len(time) == 0:
         if rate is None:
-            raise RelayContactError(f"{path}: channel {name}: no time; give the rate, in samples a second")
+            raise RelayContactError(f"{where}: no time; give the rate, in samples a second")
         time, clock = np.arange(len(values)) / rate, "s"
     elif rate is not None:
-        raise RelayContactError(f"{path}: channel {name}: a rate is given, and the file has a time")
+        raise RelayContactError(f"{where}: a rate is given, and the file has a time")
     if clock and clock not in TIMES:
-        told = f"time in {clock}: not allowed, allowed is {', '.join(TIMES)}"
-        raise RelayContactError(f"{path}: channel {name}: {told}")
+        raise RelayContactError(f"{where}: time in {clock}: not allowed, allowed is {', '.join(TIMES)}")
     time = np.asarray(time, dtype=float) * TIMES[clock or "s"]
     if len(values) != len(time) or len(values) < FEWEST:
-        told = f"{len(values)} values for {len(time)} times: not allowed, allowed are as many, {FEWEST} or more"
-        raise RelayContactError(f"{path}: channel {name}: {told}")
+        told = f"{len(values)} values for {len(time)} times"
+        raise RelayContactError(f"{where}: {told}: not allowed, allowed are as many, {FEWEST} or more")
     for what, bad in (
         ("one that the file does not mark as invalid", np.broadcast_to(channel.invalid, values.shape)),
         ("a finite number", ~(np.isfinite(values) & np.isfinite(time))),
@@ -148,12 +147,12 @@ def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> 
         if bad.any():
             at, count = int(bad.argmax()), int(bad.sum())
             first = f", the first of {count}" if count > 1 else ""
-            told = f"value {at + 1}: {values[at]:g} at {time[at]:.9g} s{first}: not allowed, allowed is {what}"
-            raise RelayContactError(f"{path}: channel {name}: {told}")
+            told = f"value {at + 1}: {values[at]:g} at {time[at]:.9g} s{first}"
+            raise RelayContactError(f"{where}: {told}: not allowed, allowed is {what}")
     if np.ptp(values) == 0:
-        told = f"{values[0]:g} m/s2 all the time: not allowed, allowed are values that differ"
-        raise RelayContactError(f"{path}: channel {name}: {told}")
-    return Record(path, name, time, values, clock)
+        told = f"{values[0]:g} m/s2 all the time"
+        raise RelayContactError(f"{where}: {told}: not allowed, allowed are values that differ")
+    return Record(path, channel.name, time, values, clock)
 
 
 def text(path: Path) -> Iterator[Channel]:

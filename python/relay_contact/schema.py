@@ -66,12 +66,17 @@ def message(path: Path, model: Any, error: Any) -> tuple[int, str]:  # noqa: ANN
         case "missing":
             what = f"{dotted(place)}: missing"
         case _:
-            text = error["msg"].removeprefix("Value error, ").replace("Input should be ", "allowed is ")
-            for pattern, word in WORDS.items():
-                text = re.sub(pattern, word, text)
-            what = f"{dotted(place)} = {shown(error['input'])}: not allowed, {text}"
+            what = f"{dotted(place)} = {shown(error['input'])}: not allowed, {allowed(error)}"
     at = line(path, place)
     return at, f"{path}:{at}: {what}"
+
+
+def allowed(error: Any) -> str:  # noqa: ANN401
+    """Return what is allowed in place of what pydantic found, in words."""
+    text: str = error["msg"].removeprefix("Value error, ").replace("Input should be ", "allowed is ")
+    for pattern, word in WORDS.items():
+        text = re.sub(pattern, word, text)
+    return text
 
 
 def refused(path: Path, place: Place, value: Any, text: str) -> RelayContactError:  # noqa: ANN401

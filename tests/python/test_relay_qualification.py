@@ -14,7 +14,7 @@ from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
-from relay_contact.qualification.judgement import searched, transient
+from relay_contact.qualification.judgement import transient
 from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, Rest, all_parts
 from relay_contact.qualification.position import Position
@@ -40,7 +40,7 @@ def position(values: Values, *tests: Asked, current: float = 1.0) -> Position:
 
 def least_level(each: Position, test: Sine) -> float:
     """Return the least level (m/s2) that fails a part in a sine of steps."""
-    frequency, factor, _ = searched(each, test)
+    frequency, factor, _ = each.weakest[test.name]
     return factor * float(test.amplitude(np.array(frequency)))
 
 
@@ -102,7 +102,7 @@ def test_the_weakest_frequency_is_that_of_brute_force() -> None:
     soft = {**WEAK, "armature.stopStiffness": 2e4, "armature.mass": 2e-3, "armature.stopRestitution": 0.7}
     test = Sine("sine", "", "from memory", acceleration=1.0, frequencies=(200.0, 1200.0), sweep_rate=1.0)
     core = next(each for each in position(soft, test).parts if each.part == CORE)
-    frequency, factor, _ = searched(core, test)
+    frequency, factor, _ = core.weakest[test.name]
 
     def brute(tried: float) -> float:
         low, high = 0.5 * factor, 8 * factor

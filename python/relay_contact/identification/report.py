@@ -29,11 +29,6 @@ OVER = {
 OVER_FREQUENCY = ("frequency [Hz]", 1.0)
 DECADE = 6.0  # ratio of largest to least value from which on there is no room for labels between powers of ten
 DENSE = 300  # values from which on points are drawn smaller
-NOTES = """Fitted by least squares, with the component as the model. The scatter of each measurement is that of its
-residuals, independent from one value to the next. Intervals have 95 % confidence. Parameters that are not in the table
-have the values of the relay's file, and its uncertainties where it states them. Size, phase and offset of a ring-down
-are free, so that its sensor needs no calibration. The written relay file has the values found, with their
-uncertainties."""
 
 
 def shown(component: Component, found: Found) -> tuple[str, str, str, str]:
@@ -144,7 +139,7 @@ def write(folder: Path, result: Identification, component: Component) -> None:
         figure.savefig(folder / FILES[1], dpi=130)
         page = pages.render(
             "identification.html", title=f"{result.relay.title}, identified", found=(HEAD, cells(component, result)),
-            remarks=silent(result), figure=pages.svg(figure), notes=NOTES, component=component.description.guid,
+            remarks=silent(result), figure=pages.svg(figure), component=component.description.guid,
             data=(("measurement", "file", "position", "contact", "values", "scatter (rms)"), data(result)),
             correlations=matrix(result) if len(result.found) > 1 else None,
         )  # fmt: skip

@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass
 
 from relay_contact.component import Array
 from relay_contact.files import RelayContactError
-from relay_contact.schema import STRICT, Table, within
+from relay_contact.schema import STRICT, Table, allowed, dotted, within
 
 # scipy has them too, and takes longer to import than a test.
 below = np.vectorize(lambda score: erfc(-score / sqrt(2)) / 2, otypes=[float])
@@ -109,9 +109,8 @@ def read(value: object) -> Distribution:
         first = errors.errors()[0]
         if not isinstance(value, dict):
             raise ValueError("allowed is a part of the value, from 0 to less than 1, or a distribution") from errors
-        place = ".".join(str(each) for each in first["loc"])
-        told = first["msg"].removeprefix("Value error, ").replace("Input should be ", "allowed is ")
-        raise ValueError(f"{place}: {told}" if place else told) from errors
+        place = f"{dotted(first['loc'])}: " if first["loc"] else ""
+        raise ValueError(place + allowed(first)) from errors
 
 
 class Correlation(Table):

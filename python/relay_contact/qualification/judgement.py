@@ -23,9 +23,9 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     Transient,
     straight,
 )
-from relay_contact.qualification.level import RESOLUTION, Lengths
+from relay_contact.qualification.level import MOST, RESOLUTION, Lengths
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP, pusher_of
-from relay_contact.qualification.position import MOST, WORN, Drawn, Position
+from relay_contact.qualification.position import WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
@@ -107,20 +107,11 @@ def rested(position: Position) -> dict[str, float]:
     return {OPEN if specimen.is_open else CLOSED: specimen.response.reserve} | second | held
 
 
-def searched(position: Position, test: Sine) -> tuple[float, float, list[str]]:
-    """Return the frequency (Hz) at which a part fails at the least level, its factor of the level, and what fails."""
-    known, factors = position.specimen.response.sine(test, position.specimen.lasting)
-    at = int(factors.argmin())
-    if factors[at] >= MOST:
-        return float(known[at]), MOST, []
-    return position.weakest[test.name]
-
-
 def vibration(position: Position, test: Sine, points: int) -> Found:
     """Vibrate steadily at frequencies of the sweep, and seek the levels that fail each part where they are least."""
     specimen = position.specimen
     parts = {each.part: each for each in position.parts}
-    weakest = {name: searched(each, test) for name, each in parts.items()}
+    weakest = {name: each.weakest[test.name] for name, each in parts.items()}
     low, high = test.band
     near = weakest[CONTACT][0] * np.linspace(0.9, 1.1, points // 4)
     around = (np.geomspace(low, high, points), near[(near > low) & (near < high)])

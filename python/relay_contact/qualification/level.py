@@ -5,6 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 RESOLUTION, ROUGHLY = 1e-4, 5e-4  # of levels, and of those in draws or at other frequencies
+MOST = 1e3
+"""Margin from which on a part counts as one that does not fail: what a test does not shake has an endless one."""
 ASIDE = 0.25  # of a resolution: how far beside the level that is expected just to fail others are tried
 
 Lengths = dict[str, float]

@@ -39,41 +39,16 @@ LAWS = {
     "Bonded": "contact of smooth bodies, linear and unable to open,",
 }
 """By effects.contactLaw."""
-NOTES = {
-    "Margin": """the level at which a contact fails, relative to that of the test. A closed contact fails by an
-interruption, an open one by a make, for the time that the standard allows. The interval has 95 % confidence. The
-component computes the response to a pulse at both ends of each uncertain parameter and in {fewest} to {draws} draws;
-the margins of {many} further draws follow from these. At both ends of each parameter that matters, and next to the
-limit, the component searches the level itself. If the interval includes 1, the verdict is undecided. If there are
-several models, a test is passed only if all pass, and failed only if all fail.""",
-    "Columns": """Fails first: the contact that fails at the margin. In the test: which contacts fail at the level of
-the test, and the longest failure. Least force or gap: of the closed contact and of the open one, relative to those at
-rest. Chance of failing: the fraction of draws whose margin is below 1. Its own interval of 95 % comes from the
-number of draws and the deviation of the component from them. To measure or tighten: the fraction of the variance of the
-margin that vanishes once the parameter is known (first-order Sobol index). Passes from: the overtravel of the closed
-contact, or the gap if only an open one is judged, from which on the whole interval is above 1, with the width it has
-here.""",
-    "Open contact": """in a changeover relay the spring reaches it only after the closed contact has opened. An
-interruption therefore comes first, unless the gap is crossed within the time allowed for one.""",
-    "Parts": """if the relay's file describes a pusher or an armature, each part that is held at rest is judged. The
-armature fails where the force of the core or stop that it rests on vanishes for an instant, the spring where that of
-its pusher does; the contacts as above. The margin of the relay is the smallest. The margins of the other parts are
-searched with the component, at their own weakest frequency or dip and where the first part fails.""",
-    "Sine": """steady vibration, its level raised gently; the slow sweep of a test is close to it. A contact that is
-suddenly vibrated may fail at a lower level.""",
-    "Random": """the level at which the largest dip of force or gap in the time of the test fails with a chance of one
-half, by Rice's rate of crossings from the response of the component. The largest dips in a record of one minute are
-simulated in full. What fails in the test is shown for such a dip, raised to the size of the largest in the time of the
-test. The noise is Gaussian, and clipped only where the level says so.""",
-    "Shock": "a pulse in both directions along the motion of the contact; the worse one is shown.",
-    "Spectrum": """a pulse of damped sines, in both directions, whose shock response spectrum is the required one or
-more. Another pulse that meets the spectrum may be more severe for the contact.""",
-    "Record": """the margin is a factor on the whole record. The component is run around its largest dips of force or
-gap by linear theory, with the times and values of the file. The interval begins lower by what straight lines between
-the values take off a vibration at the first resonance, and at 0 if the steps are too coarse for it.""",
-}
 PUSHERS = {"Prescribed": "pusher that stays where it is", MOVED: "armature that moves a pusher"}
-"""By effects.pusher."""
+SHAKEN = {
+    NONE: ("The contact springs as in a rigid relay", ""),
+    "Prescribed": ("The contact springs with their pusher", " and the pusher"),
+    MOVED: (
+        "The relay with its contacts, its armature and the pusher between them",
+        " and pivot and core of the armature",
+    ),
+}
+"""By effects.pusher: what is judged, and what of it the base moves beside the contacts, the least first."""
 SETTINGS = ("excitation.", "chatter.", "solver.")
 """Parameters that are not the relay's."""
 UNUSED = {
@@ -227,19 +202,13 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
     """Return what was judged and what was not."""
     axes = ", ".join(["normal to the contact", *relay.axes])
     every = [{**values, **model.parameters} for values in relay.positions.values() for model in relay.models]
-    pushers = {str(values.get("effects.pusher", NONE)) for values in every}
     sprung = any(values.get("fixed.file") for values in every)
-    moved = MOVED in pushers
-    with_ = {NONE: "The contact springs as in a rigid relay", "Prescribed": "The contact springs with their pusher"}
-    first = with_["Prescribed" if pushers != {NONE} else NONE]
-    shaken = "the clamps of both springs" if sprung else "the clamp of the spring and the fixed contacts"
-    if pushers != {NONE}:
-        shaken += " and the pusher"
-    if moved:
-        first = "The relay with its contacts, its armature and the pusher between them"
-        shaken = shaken.replace("the pusher", "pivot and core of the armature")
-    first += f": base vibration moves {shaken} alike."
-    if pushers != {NONE}:
+    # A part that one of the models has is judged.
+    pusher = max((str(values.get("effects.pusher", NONE)) for values in every), key=[*SHAKEN].index)
+    what, others = SHAKEN[pusher]
+    clamps = "the clamps of both springs" if sprung else "the clamp of the spring and the fixed contacts"
+    first = f"{what}: base vibration moves {clamps}{others} alike."
+    if pusher != NONE:
         first += " A verdict is that of the part that fails first."
     if any(values.get("effects.parallelContact") for values in every):
         first += " Twin contacts fail where both are open at once; forces at rest are those of the first."
@@ -248,7 +217,7 @@ def scope(relay: Relay, standard: Standard) -> tuple[list[str], list[str]]:
         f"Base acceleration along: {axes}.",
         f"{len(standard.tests)} tests, in the positions of the coil: {', '.join(relay.positions)}.",
     ]
-    absent = "Circuit of the coil, and case," if moved else "Armature, actuator, coil and case"
+    absent = "Circuit of the coil, and case," if pusher == MOVED else "Armature, actuator, coil and case"
     left = [f"{absent} are not in the model: what they do to the contact is not in any verdict here.",
             "Bounce after switching, and wear beyond the loss of overtravel."]  # fmt: skip
     if standard.left:
@@ -298,9 +267,7 @@ def html(assessment: Assessment, component: Component, date: str) -> str:
         positions=[position_context(assessment, component, name, values) for name, values in relay.positions.items()],
         head=HEAD, reasons=REASONS, fills=FILLS, several=len(relay.models) > 1, first_model=relay.models[0].name,
         inputs=inputs(component, relay), springs=springs(relay), limit=limit(standard), sources=sources,
-        notes=[f"{name}: {' '.join(text.format(fewest=FEWEST, draws=DRAWS, many=statistics.MANY).split())}"
-               for name, text in NOTES.items()],
-        versions=versions(assessment, component),
+        fewest=FEWEST, draws=DRAWS, many=statistics.MANY, versions=versions(assessment, component),
     )  # fmt: skip
 
 

@@ -15,8 +15,8 @@ from relay_contact.component import Array
 from relay_contact.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, SKY, three
 from relay_contact.figures import GRAVITY as G
 from relay_contact.qualification.judgement import QUALITY
+from relay_contact.qualification.level import MOST
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
-from relay_contact.qualification.position import MOST
 from relay_contact.qualification.results import Finding, Tested
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.words import FAILURES, QUANTITIES, failing, failures, is_open, time_text

@@ -15,7 +15,7 @@ from relay_contact.many import side_by_side
 from relay_contact.qualification import statistics, trials
 from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, quantile
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
-from relay_contact.qualification.level import ROUGHLY, threshold
+from relay_contact.qualification.level import MOST, ROUGHLY, threshold
 from relay_contact.qualification.parts import CONTACT, Rest, at_rest
 from relay_contact.qualification.relay import NORMAL, Model, Relay
 from relay_contact.qualification.response import CALM, Response, answers, spread
@@ -39,8 +39,6 @@ SETTLED = 1e-3
 """Part of its largest answer below which that of a drawn contact is cut off."""
 GRID = np.linspace(-5.0, 5.0, 41)
 """Scores of the chance of the largest dip."""
-MOST = 1e3
-"""Margin from which on a part counts as one that does not fail: what a test does not shake has an endless one."""
 LOWEST = 1e-3
 """Margin of a draw that fails at rest, whose logarithm would be endless."""
 FAR = -9e-3

@@ -12,7 +12,7 @@ from relay_contact.component import Array, Component, Contact, Values, sine
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
-from relay_contact.qualification.level import Lengths, Tried, threshold
+from relay_contact.qualification.level import MOST, Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response, fast, stays
 from relay_contact.qualification.standards import Contacts
@@ -234,11 +234,13 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
 
     That of linear theory, if the component fails there as expected, or the test has no other. Else steps from there to
     lower levels, then the vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is
-    elsewhere.
+    elsewhere. What the test hardly shakes does not fail.
     """
     known, factors = specimen.response.sine(test, specimen.lasting)
     at = int(factors.argmin())
     first, guess = float(known[at]), float(factors[at])
+    if guess >= MOST:
+        return first, MOST, []
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
     low, high = test.band
 

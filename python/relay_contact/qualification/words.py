@@ -3,8 +3,9 @@
 from relay_contact.figures import three
 from relay_contact.qualification.excitation import LEVELS
 from relay_contact.qualification.judgement import verdict
+from relay_contact.qualification.level import MOST
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
-from relay_contact.qualification.position import CHANCE, MODEL, MOST, WORN
+from relay_contact.qualification.position import CHANCE, MODEL, WORN
 from relay_contact.qualification.results import Chance, Finding, Margin, PartMargin, Tested
 
 HEAD = (
