@@ -1,5 +1,6 @@
 """A test in a position of the coil, by one of the models: its margin, its verdict, and what the figures show."""
 
+from contextvars import copy_context
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -358,11 +359,9 @@ def density(sampled: Array, frequency: Array, spacing: float) -> list[float]:
 def tested(position: Position, test: Test, points: int) -> Finding:
     """Run a test in a position of the coil, by one of the models; with what the component warned of."""
     warnings: dict[str, str] = {}
-    before = KEPT.set(warnings)
-    try:
-        finding = judged(position, test, points)
-    finally:
-        KEPT.reset(before)
+    context = copy_context()
+    context.run(KEPT.set, warnings)
+    finding = context.run(judged, position, test, points)
     return replace(finding, warnings=list(warnings.values()))
 
 
@@ -377,13 +376,8 @@ def judged(position: Position, test: Test, points: int) -> Finding:
             verdict, limits, own, notes,
         )  # fmt: skip
 
-    if reason := not_held(position):
-        return finding("FAIL", reason)
-    if reason := not_judged(position):
-        return finding("not judged", reason)
-    if position.specimen.response.reserve <= 0:
-        reason = f"interrupted at rest: more than {position.contacts.threshold:g} Ω of contact resistance"
-        return finding("FAIL", reason)
+    if known := decided_at_rest(position):
+        return finding(*known)
     if isinstance(test, History):
         notes += test.record.sampled(position.specimen.response.natural)
     match test:
@@ -400,21 +394,21 @@ def judged(position: Position, test: Test, points: int) -> Finding:
     return finding(verdict(own.low, own.high), levels[first_of(levels)].limits, own)
 
 
-def not_held(position: Position) -> str:
-    """Return why the armature is not held at all, if it is not."""
-    moved = pusher_of(position.component, position.values) == MOVED
-    return "the armature rests at neither of its stops" if moved and not {CORE, STOP} & {*position.rest.held} else ""
-
-
-def not_judged(position: Position) -> str:
-    """Return why a position is not judged, if it is not."""
+def decided_at_rest(position: Position) -> tuple[Verdict, str] | None:
+    """Return the verdict of a position that its state at rest decides, and why."""
+    pusher = pusher_of(position.component, position.values)
+    if pusher == MOVED and not {CORE, STOP} & {*position.rest.held}:
+        return "FAIL", "the armature rests at neither of its stops"
     if position.axis not in (NORMAL, *position.relay.axes):
-        return f"the relay's file has no participations of the modes in the axis {position.axis}"
-    if position.value("contact.overtravel") == 0 and pusher_of(position.component, position.values) == NONE:
-        return "the contact just touches: neither closed nor open"
+        return "not judged", f"the relay's file has no participations of the modes in the axis {position.axis}"
+    if position.value("contact.overtravel") == 0 and pusher == NONE:
+        return "not judged", "the contact just touches: neither closed nor open"
     if position.value("effects.secondContact") and position.rest.is_open:
-        return "both contacts open: closings on both sides are not judged; give each side as a position of its own"
-    return ""
+        both = "both contacts open: closings on both sides are not judged"
+        return "not judged", f"{both}; give each side as a position of its own"
+    if position.specimen.response.reserve <= 0:
+        return "FAIL", f"interrupted at rest: more than {position.contacts.threshold:g} Ω of contact resistance"
+    return None
 
 
 def first_of(levels: dict[str, Level]) -> str:

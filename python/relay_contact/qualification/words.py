@@ -91,18 +91,19 @@ def own_cells(finding: Finding) -> list[str]:
 
 def part_rows(finding: Finding) -> list[list[str]]:
     """Return a row for each part of a relay that has others than its contacts."""
-    own = finding.judged
-    return [] if own is None else [part_row(own, name, part) for name, part in own.parts.items()]
-
-
-def part_row(margin: Margin, name: str, part: PartMargin) -> list[str]:
-    """Return the row of a part in the table."""
-    names = [each for each in (CLOSED, OPEN) if each in margin.least] if name == CONTACT else [name]
-    told = [failure(margin, each) for each in names if each in margin.failed]
-    left = [left_of(margin, each) for each in names]
-    label = names[0] if name == CONTACT and len(names) == 1 else "contacts" if name == CONTACT else name
-    cells = [verdict(part.low, part.high), *numbers(part, margin.stated), part.weakest, "", ", ".join(told) or "holds"]
-    return [f"· {label}", "", *cells, ", ".join(left)]
+    margin = finding.judged
+    found: list[list[str]] = []
+    if margin is None:
+        return found
+    for name, part in margin.parts.items():
+        names = [each for each in (CLOSED, OPEN) if each in margin.least] if name == CONTACT else [name]
+        label = "contacts" if len(names) > 1 else names[0]
+        told = [failure(margin, each) for each in names if each in margin.failed]
+        left = [left_of(margin, each) for each in names]
+        interval = numbers(part, margin.stated)
+        cells = [verdict(part.low, part.high), *interval, part.weakest, "", ", ".join(told) or "holds", ", ".join(left)]
+        found.append([f"· {label}", "", *cells])
+    return found
 
 
 def rows(tested: Tested) -> list[list[str]]:
