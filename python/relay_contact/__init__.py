@@ -12,6 +12,7 @@ table for each; `side_by_side` does so with work of your own. `qualify` tests a 
 `Contact` step it by hand.
 """
 
+import importlib
 from typing import Any
 
 from relay_contact.component import Array, Component, Contact, Unit, Value, Values, units
@@ -19,22 +20,18 @@ from relay_contact.files import RelayContactError, RelayContactWarning, fmu_path
 from relay_contact.many import run_many, side_by_side
 from relay_contact.scene import Result, Scene, read_table, run, write_table
 
+LATER = {
+    "qualify": "qualification", "relays": "qualification", "standards": "qualification", "compare": "comparison",
+    "identify": "identification",
+}  # fmt: skip
+"""What needs matplotlib, with its module: loaded only when it is asked for."""
+
 
 def __getattr__(name: str) -> Any:  # noqa: ANN401
-    """Load what needs matplotlib only when it is asked for."""
-    if name in ("qualify", "relays", "standards"):
-        from relay_contact import qualification
-
-        return getattr(qualification, name)
-    if name == "compare":
-        from relay_contact import comparison
-
-        return comparison.compare
-    if name == "identify":
-        from relay_contact import identification
-
-        return identification.identify
-    raise AttributeError(name)
+    """Return what is loaded later."""
+    if name not in LATER:
+        raise AttributeError(name)
+    return getattr(importlib.import_module(f"relay_contact.{LATER[name]}"), name)
 
 
 __all__ = [
