@@ -37,9 +37,15 @@ def is_open(margin: Margin) -> bool:
     return CLOSED not in margin.rest
 
 
+def failure(name: str, length: float, where: str = "") -> str:
+    """Return how something fails, for how long (s) if it is a contact, in words."""
+    told = LEAVES.get(name) or f"{name} {FAILURES[name]} for {time_text(length)}"
+    return f"{told} {where}".rstrip()
+
+
 def failures(margin: Margin) -> str:
     """Return what fails at the level of the test, and the longest failure of contacts, in words."""
-    told = [failure(margin, name) for name in margin.failed]
+    told = [failure(name, length, margin.where[name]) for name, length in margin.failed.items()]
     if not told and margin.margin <= 1:
         return f"none fails at this level itself, but at {three(margin.margin)} of it"
     return ", ".join(told) or "none fails"
@@ -47,16 +53,8 @@ def failures(margin: Margin) -> str:
 
 def failing(margin: Margin) -> str:
     """Return what fails at the margin of a course, in words."""
-    failed = margin.curves["failing"].items()
-    told = [LEAVES.get(name) or f"{name} {FAILURES[name]} for {time_text(length)}" for name, length in failed]
+    told = [failure(name, length) for name, length in margin.curves["failing"].items()]
     return f"At {three(margin.margin)} of the level: {', '.join(told) or 'none fails'}"
-
-
-def failure(margin: Margin, name: str) -> str:
-    """Return how something fails at the level of the test, in words."""
-    if name in LEAVES:
-        return f"{LEAVES[name]} {margin.where[name]}".rstrip()
-    return f"{name} {FAILURES[name]} for {time_text(margin.failed[name])} {margin.where[name]}".rstrip()
 
 
 def at_rest(margin: Margin) -> str:
@@ -98,7 +96,7 @@ def part_rows(finding: Finding) -> list[list[str]]:
     for name, part in margin.parts.items():
         names = [each for each in (CLOSED, OPEN) if each in margin.least] if name == CONTACT else [name]
         label = "contacts" if len(names) > 1 else names[0]
-        told = [failure(margin, each) for each in names if each in margin.failed]
+        told = [failure(each, margin.failed[each], margin.where[each]) for each in names if each in margin.failed]
         left = [left_of(margin, each) for each in names]
         interval = numbers(part, margin.stated)
         cells = [verdict(part.low, part.high), *interval, part.weakest, "", ", ".join(told) or "holds", ", ".join(left)]
