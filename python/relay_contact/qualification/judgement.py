@@ -324,13 +324,12 @@ def excited(test: Transient) -> dict[str, Any]:
     sampled = course.sampled()
     # Of a long record fewer frequencies: each takes a filter over all of it.
     spacing = synthesis.SPACING if course.end <= SHORT else 2 ** (1 / 3)
-    low, high = (test.response[0][0], test.response[-1][0]) if isinstance(test, Spectrum) else (
-        max(1.0, 2 / course.end), min(1e4, 0.25 * (len(course.time) - 1) / course.end)
-    )  # fmt: skip
+    if isinstance(test, Spectrum):
+        low, high, quality = test.response[0][0], test.response[-1][0], test.quality
+    else:
+        low, high, quality = max(1.0, 2 / course.end), min(1e4, 0.25 * (len(course.time) - 1) / course.end), QUALITY
     # Of a very short record, or a slow one, one frequency.
-    low = min(low, high)
-    frequency = synthesis.grid(low, high, spacing)
-    quality = test.quality if isinstance(test, Spectrum) else QUALITY
+    frequency = synthesis.grid(min(low, high), high, spacing)
     shown: dict[str, Any] = {
         "srs": [frequency.tolist(), synthesis.response(sampled, STEP, frequency, quality).tolist()]
     }

@@ -49,9 +49,9 @@ SHAKEN = {
     ),
 }
 """By effects.pusher: what is judged, and what of it the base moves beside the contacts, the least first."""
-SETTINGS = ("excitation.", "chatter.", "solver.")
+SETTINGS: tuple[str, ...] = ("excitation.", "chatter.", "solver.")
 """Parameters that are not the relay's."""
-UNUSED = {
+UNUSED: dict[str, tuple[str, ...]] = {
     "effects.secondContact": ("second.",),
     "effects.friction": ("friction.", "effects.friction"),
     "effects.contactLaw": ("contact.stiffness",),
@@ -112,16 +112,16 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
     columns = columns_of(relay)
     described = units(component.description)
     own = {name for values in columns.values() for name in values}
-    hidden: list[tuple[str, ...]] = [SETTINGS]
+    hidden = SETTINGS
     for name, prefixes in UNUSED.items():
-        used = any(values.get(name, component.start(name)) != component.start(name) for values in columns.values())
-        hidden += [] if used else [prefixes]
+        if {values.get(name, component.start(name)) for values in columns.values()} == {component.start(name)}:
+            hidden += prefixes
     without = [replaced(values) for values in columns.values()]
     found = []
     for name, variable in component.variables.items():
         if name in SPRING_FILES or (variable.causality != "parameter" and name not in own):
             continue
-        if name not in own and (any(map(name.startswith, hidden)) or all(name in names for names in without)):
+        if name not in own and (name.startswith(hidden) or all(name in names for names in without)):
             continue
 
         def text(value: Any, name: str = name) -> str:  # noqa: ANN401
