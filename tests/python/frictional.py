@@ -13,10 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from component import STARTS
 from one_sided import CLOSED, Law, System, shaking
 from reference import Reference
-from relay_contact import Array, Values
+from relay_contact import Array
 
 MILLISECOND = 1e-3
 # By which a change of phase is later than it is, of the deflection under Coulomb's limit.
@@ -78,53 +77,14 @@ class Rubbing(Law):
         return Phase(copysign(1.0, against)) if excess > 0 else Phase.STICK
 
 
-class Frictional(Reference):
-    """The contact with its spring at preload, closed by sliding."""
-
-    def __init__(self, values: Values) -> None:
-        """Take the parameters by name; what is not given has its start value."""
-        known: dict[str, Any] = {**STARTS, **values}
-        self.height: float = known["tip.contactHeight"]
-        # Friction force over contact force at the preload.
-        self.share: float = known["friction.initial"] * known["friction.coefficient"]
-        super().__init__(values)
-        sides: list[tuple[float, float]] = [
-            (known[f"contact.{side}.youngsModulus"], known[f"contact.{side}.poissonRatio"])
-            for side in ("moving", "fixed")
-        ]
-        modulus = 1 / sum((2 - nu) * 2 * (1 + nu) / e for e, nu in sides)  # G*
-        self.tangential: float = 8 * modulus * sqrt(known["contact.curvatureRadius"] * max(self.indentation, 0.0))
-        # Tangential over normal stiffness, k_t / k_n = 4 G* / E*.
-        self.ratio = 4 * modulus * sum((1 - nu**2) / e for e, nu in sides)
-        self.coefficient: float = known["friction.coefficient"]
-
-    def _unbalance(self, indentation: float) -> float:
-        deflection = self.overtravel - indentation
-        per_force, per_moment, per_acceleration = self.responses(0.0, self.axial_force_at(deflection))[0].real
-        pushed = (per_force + per_moment * self.height * self.share) * self.elastic(indentation)
-        return float(deflection - pushed - per_acceleration * self.gravity)
-
-    def sticking_frequency(self) -> float:
-        """Lowest natural frequency of the contact that sticks, under a constant axial force, Hz; exact."""
-        return self.frequency(self.height**2 * self.tangential)
-
-    def growth(self, force: float, sign: float) -> complex:
-        """Give the eigenvalue (1/s) that grows fastest of small motions about slip, at a contact force (N)."""
-        modes = self.modes()
-        # Hertz: the stiffness is as the cube root of the force.
-        stiffness = self.tangent * (force / self.force) ** (1 / 3)
-        pushed = np.outer(modes.tip + sign * self.coefficient * self.height * modes.rotation, stiffness * modes.tip)
-        return complex(max(self.eigenvalues(pushed), key=lambda value: value.real))
-
-
 class FrictionalMotion(System):
     """Friction and slip: beside the motion are the deflection z, the distance slipped and the energy dissipated."""
 
-    def __init__(self, relay: Frictional, tolerance: float) -> None:
+    def __init__(self, relay: Reference, tolerance: float) -> None:
         """Take a relay with its excitation."""
         modes, self.relay = relay.modes(), relay
         self.law = Rubbing("contact", -modes.tip, relay.factor, relay.contact_damping, 1.5, relay.overtravel,
-                           ratio=relay.ratio, coefficient=relay.coefficient)  # fmt: skip
+                           ratio=relay.tangential_ratio, coefficient=relay.coefficient)  # fmt: skip
         super().__init__(modes.omega_squared, modes.damping, modes.participation, [self.law], *shaking(relay.values))
         # Displacement along the spring by the modes.
         self.near, self.lever, omega = [relay.indentation], relay.height * modes.rotation, np.sqrt(self.squares)

@@ -16,7 +16,7 @@ from math import pi
 import numpy as np
 
 from component import COMPONENT, ROOT
-from frictional import Frictional, FrictionalMotion
+from frictional import FrictionalMotion
 from reference import Reference
 from relay_contact import Array, RelayContactError, Value
 from relay_contact.component import sine
@@ -106,9 +106,8 @@ def draw(number: int) -> Relay:
 
 def second(relay: Relay, functions: int, tolerance: float) -> tuple[Array, int, float]:
     """Return contact forces (N) at the communication points, openings and closings, and the force scale (N)."""
-    values = {**relay.values, "solver.modes": functions}
-    reference = Frictional(values) if relay.rubs else Reference(values)
-    if isinstance(reference, Frictional):
+    reference = Reference({**relay.values, "solver.modes": functions})
+    if relay.rubs:
         course = FrictionalMotion(reference, tolerance).solve(relay.times)
     else:
         course = reference.course(relay.times, tolerance=tolerance)

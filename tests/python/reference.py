@@ -71,6 +71,11 @@ class Reference:
         self.contact_damping: float = get("contact.damping") if get("effects.contactDamping") else 0.0
         self.law, self.axial = get("effects.contactLaw"), get("effects.axialForce")
         self.gravity: float = get("environment.gravity")
+        self.height: float = get("tip.contactHeight")
+        # Friction force over contact force in slip, and at the preload, where closing has left it.
+        rubs = get("effects.friction") != "None"
+        self.coefficient: float = get("friction.coefficient") if rubs else 0.0
+        self.share: float = get("friction.initial") * self.coefficient
         self.overtravel: float = get("contact.overtravel")
         # Without overtravel there is a gap, and no preload.
         self.indentation: float = min(self.overtravel, 0.0)
@@ -89,6 +94,19 @@ class Reference:
     def stiffness_at(self, indentation: Array | float) -> Array:
         """Its tangent stiffness, N/m."""
         return self.power * self.factor * np.maximum(indentation, 0.0) ** (self.power - 1)
+
+    @property
+    def tangential_ratio(self) -> float:
+        """Tangential over normal stiffness of the contact that sticks, k_t / k_n = 4 G* / E*, by Mindlin."""
+        sides = [[self.values[f"contact.{side}.{name}"] for name in ("youngsModulus", "poissonRatio")]
+                 for side in ("moving", "fixed")]  # fmt: skip
+        modulus = 1 / sum((2 - nu) * 2 * (1 + nu) / e for e, nu in sides)  # G*
+        return float(4 * modulus * sum((1 - nu**2) / e for e, nu in sides))
+
+    @property
+    def tangential(self) -> float:
+        """Tangential stiffness at the preload, N/m."""
+        return self.tangential_ratio * self.tangent
 
     @property
     def tip_stiffness(self) -> float:
@@ -122,9 +140,9 @@ class Reference:
 
     def _unbalance(self, indentation: float) -> float:
         deflection = self.overtravel - indentation
-        per_force, per_acceleration = self.compliances(0.0, self.axial_force_at(deflection)).real
-        pushed = per_force * self.elastic(indentation) + per_acceleration * self.gravity
-        return float(deflection - pushed)
+        per_force, per_moment, per_acceleration = self.responses(0.0, self.axial_force_at(deflection))[0].real
+        pushed = (per_force + per_moment * self.height * self.share) * self.elastic(indentation)
+        return float(deflection - pushed - per_acceleration * self.gravity)
 
     def responses(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
         """Deflection (m) and rotation of the tip, in rows, at an angular frequency; exact.
@@ -156,12 +174,12 @@ class Reference:
         per_force, per_acceleration = self.compliances(omega, self.axial_force)
         return complex(-contact * per_acceleration / (1 + contact * per_force))
 
-    def frequency(self, turning: float = 0.0) -> float:
+    def frequency(self, sticks: bool = False) -> float:
         """Lowest natural frequency with the contact as a spring, under a constant axial force, Hz; exact.
 
-        Another spring (N m) may hold the tip against rotation.
+        A contact that sticks holds the tip against rotation, too.
         """
-        springs, modes = np.diag([self.tangent, turning]), self.modes()
+        springs, modes = np.diag([self.tangent, sticks * self.height**2 * self.tangential]), self.modes()
 
         def determinant(frequency: float) -> float:
             flexible = self.responses(2 * pi * frequency, self.axial_force, False)[:, :2].real
@@ -202,6 +220,14 @@ class Reference:
         stiffness = np.diag(modes.omega_squared) + contact
         damping = np.diag(modes.damping) + self.contact_damping * contact
         return np.linalg.eigvals(np.block([[none, np.eye(len(none))], [-stiffness, -damping]]))
+
+    def growth(self, force: float, sign: float) -> complex:
+        """Return the eigenvalue (1/s) that grows fastest of small motions about slip, at a contact force (N)."""
+        modes = self.modes()
+        # Hertz: the stiffness is as the cube root of the force.
+        stiffness = self.tangent * (force / self.force) ** (1 / 3)
+        pushed = np.outer(modes.tip + sign * self.coefficient * self.height * modes.rotation, stiffness * modes.tip)
+        return complex(max(self.eigenvalues(pushed), key=lambda value: value.real))
 
     def linear_force(self, step: float, steps: int) -> Array:
         """Contact force of the linear contact, which can pull, at the multiples of a step from rest, N.

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from component import COMPONENT, run
-from frictional import Frictional, FrictionalMotion, Phase
+from frictional import FrictionalMotion, Phase
+from reference import Reference
 from relay_contact import Array, Contact, Scene, Values
 from relay_contact import run as run_scene
 from relay_contact.component import half_sine, sine
@@ -55,7 +56,7 @@ class Results:
     expected: dict[str, Array]
     changes: dict[tuple[str, str], list[float]]
     motion: FrictionalMotion
-    reference: Frictional
+    reference: Reference
 
 
 @cache
@@ -63,11 +64,11 @@ def results(name: str) -> Results:
     """Run the component and the reference."""
     values, stop = MOTIONS[name]
     found = run(values, stop, STEP, OUTPUTS)
-    motion = FrictionalMotion(Frictional(values), 1e-12)
+    motion = FrictionalMotion(Reference(values), 1e-12)
     return Results(found, *motion.outputs(found["time"]), motion, motion.relay)
 
 
-def allowed(reference: Frictional, expected: dict[str, Array]) -> dict[str, float]:
+def allowed(reference: Reference, expected: dict[str, Array]) -> dict[str, float]:
     """Give the errors allowed in outputs: the tolerance relative to the largest force, and to what belongs to it."""
     force = TOLERANCE * max(reference.force_scale, np.max(expected["contact.force"]))
     limit = reference.coefficient * reference.force
@@ -126,10 +127,10 @@ def test_the_preload_holds_the_friction_that_closing_left(values: Values) -> Non
     values = {"effects.axialForce": "None", "effects.friction": "Coulomb", **values}
     outputs = ["contact.force", "contact.tangentialForce", "contact.slip", "contact.indentation"]
     found = {name: course[0] for name, course in run(values, STEP, STEP, outputs).items()}
-    reference = Frictional(values)
+    reference = Reference(values)
     friction = reference.share * reference.force
     expected = [reference.force, friction, friction / reference.tangential, reference.indentation]
-    assert reference.force != pytest.approx(Frictional({**values, "friction.initial": 0.0}).force, rel=1e-3)
+    assert reference.force != pytest.approx(Reference({**values, "friction.initial": 0.0}).force, rel=1e-3)
     # Static equilibrium by two roots of one equation.
     assert [found[name] for name in outputs] == pytest.approx(expected, rel=1e-11)
 
@@ -140,7 +141,7 @@ def test_friction_decides_whether_the_contact_opens() -> None:
     count, least = (run_scene(scene, outputs=outputs)[name] for name in outputs)
     assert count[-1] == 0
     # Far from opening, a quarter of the preload.
-    assert least[1:].min() > 0.25 * Frictional(scene.values).force
+    assert least[1:].min() > 0.25 * Reference(scene.values).force
     assert run_scene(scene, outputs=outputs, friction_coefficient=0.0)["chatter.count"][-1] > 10
 
 
@@ -180,7 +181,7 @@ def test_unstable_slip_is_told(number: int) -> None:
     numbers, others = UNSTABLE[number]
     own = dict(zip(NAMES, numbers, strict=True))
     values = {"effects.axialForce": "None", **own, **others, "effects.friction": "Coulomb", **MANY}
-    relay, calmer = Frictional(values), {**values, "friction.coefficient": 0.02}
+    relay, calmer = Reference(values), {**values, "friction.coefficient": 0.02}
     shares = 1, 1 / 4, 4, 1 / 16, 16
     forces = [share * relay.force for share in shares]
     force, growing = next((force, value) for force in forces if (value := relay.growth(force, -1.0)).real > 0)
@@ -191,7 +192,7 @@ def test_unstable_slip_is_told(number: int) -> None:
     # Three digits.
     assert found == pytest.approx([force, growing.real, abs(growing.imag) / (2 * pi)], rel=5e-3)
     # Not towards the clamp, nor with little friction.
-    stable = Frictional(calmer)
+    stable = Reference(calmer)
     assert all(relay.growth(force, 1.0).real < 0 for force in forces)
     assert all(stable.growth(share * stable.force, sign).real < 0 for share in shares for sign in (-1.0, 1.0))
     assert warnings(calmer) == []
