@@ -76,17 +76,6 @@ def test_voltage_is_resistance_times_the_current_of_the_same_row() -> None:
     assert run_many([scene], component=COMPONENT)["contact.current"][0] == current[-1]
 
 
-def test_without_resistance_its_outputs_are_zero_and_the_motion_is_the_same() -> None:
-    without: Values = {"effects.resistance": "None", "effects.chatter": False, "contact.current": 0.1}
-    output = ["contact.force", "contact.resistance", "contact.conductance", "contact.voltage", "step.maximumResistance"]
-    force, *zeros = (run({**PRESSED, **without}, 2e-3, 1e-5, output)[name] for name in output)
-    for zero in zeros:
-        assert (zero == 0).all()
-    for kind in ("PowerLaw", "Holm", "Barber"):
-        values: Values = {"effects.resistance": kind, "effects.heating": True, "contact.current": 0.1}
-        assert (run({**PRESSED, **values}, 2e-3, 1e-5, output)["contact.force"] == force).all()
-
-
 @pytest.mark.parametrize(("current", "melts"), [(-0.05, "never"), (3.0, "sometimes"), (30.0, "always")])
 @pytest.mark.parametrize("source", [1e3, 0.1])
 def test_current_heats_the_closed_contact(current: float, melts: str, source: float) -> None:
@@ -168,26 +157,37 @@ def test_the_first_interruption_is_that_of_the_reference() -> None:
 
 
 EXTREMES = ["step.minimumForce", "step.maximumForce", "step.maximumResistance"]
+ELECTRICAL = ["contact.resistance", "contact.conductance", "contact.voltage", "step.maximumResistance"]
+LOADED: Values = {"contact.current": 0.1, "effects.chatter": False}
 
 
 WITHIN = 2e-6 * FORCE_SCALE
 """Two runs, each wrong by the tolerance."""
 
 
-# Extremes want steps that are right inside too, and steps end where an interruption begins or ends. Energy looks on.
+# Extremes want steps that are right inside too, and steps end where an interruption begins or ends. The others look on.
 @pytest.mark.parametrize(
-    ("effect", "outputs", "pressed", "opening"),
-    [("extremes", EXTREMES, WITHIN, WITHIN), ("chatter", CHATTER, 0.0, WITHIN), ("energy", ["energy.balance"], 0, 0)],
-)
+    ("on", "off", "outputs", "pressed", "opening"),
+    [
+        ({"effects.extremes": True}, {"effects.extremes": False}, EXTREMES, WITHIN, WITHIN),
+        ({"effects.chatter": True}, {"effects.chatter": False}, CHATTER, 0.0, WITHIN),
+        ({"effects.energy": True}, {"effects.energy": False}, ["energy.balance"], 0.0, 0.0),
+        *(
+            ({**LOADED, "effects.resistance": kind, "effects.heating": True},
+             {**LOADED, "effects.resistance": "None"}, ELECTRICAL, 0.0, 0.0)
+            for kind in ("PowerLaw", "Holm", "Barber")
+        ),
+    ],
+)  # fmt: skip
 def test_without_an_effect_its_outputs_are_zero_and_the_motion_is_the_same(
-    effect: str, outputs: list[str], pressed: float, opening: float
+    on: Values, off: Values, outputs: list[str], pressed: float, opening: float
 ) -> None:
     names = ["contact.force", *outputs]
     for scene, allowed in ((PRESSED, pressed), (OPENING, opening)):
-        on, off = (run({**scene, f"effects.{effect}": each}, 3e-3, 1e-5, names) for each in (True, False))
-        assert np.abs(on["contact.force"] - off["contact.force"]).max() <= allowed
+        seen, without = (run({**scene, **effect}, 3e-3, 1e-5, names) for effect in (on, off))
+        assert np.abs(seen["contact.force"] - without["contact.force"]).max() <= allowed
         for name in outputs:
             # A balance may be of either sign.
-            seen = np.abs(on[name]) if effect == "energy" else on[name]
-            assert (seen > 0).any() or (effect == "chatter" and scene is PRESSED)
-            assert (off[name] == 0).all()
+            found = np.abs(seen[name]) if name == "energy.balance" else seen[name]
+            assert (found > 0).any() or (outputs is CHATTER and scene is PRESSED)
+            assert (without[name] == 0).all()

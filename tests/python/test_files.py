@@ -433,34 +433,27 @@ def test_a_scene_made_in_python_is_changed_in_either_spelling() -> None:
     assert dotted[0] == pytest.approx(3 * run(scene, component=COMPONENT)["contact.force"][0], rel=1e-2)
 
 
-def test_points_of_time_are_in_one_row() -> None:
-    with COMPONENT.started() as contact, pytest.raises(RelayContactError, match="time of 2 dimensions: not allowed"):
-        contact.drive([[0.0, 1e-5]], {}, ["contact.force"])
+SPRING = (ROOT / "scenes/springs/tapered-cube.toml").read_text(encoding="utf-8")
 
 
-def test_a_parameter_of_two_spellings_is_refused_as_an_instance_begins() -> None:
-    with pytest.raises(RelayContactError, match=r"^contact.overtravel: given twice"):
-        COMPONENT.started({"contact.overtravel": 1e-4, "contact_overtravel": 3e-4})
-
-
-def test_factors_of_entries_are_checked() -> None:
-    spring = str(ROOT / "scenes/springs/tapered-cube.toml")
-    for factor in ("thick", 0.0, -1.0, float("nan")):
-        values: Any = {"beam.file": spring, "spring.thickness": factor}
-        with pytest.raises(RelayContactError, match=r"spring.thickness = .*a factor greater than 0"):
-            COMPONENT.started(values)
-
-
-def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path) -> None:
-    for text, message in (
-        ("segment = 3\n", r"spring.toml:1: segment"),
-        ("[[segment]]\nlength = 'a'\n", r"spring.toml:2: segment 1: length"),
-        ("[", "TOML"),
-    ):
-        (tmp_path / "spring.toml").write_text(text)
-        values: Any = {"beam.file": str(tmp_path / "spring.toml"), "spring.thickness": 1.1}
-        with pytest.raises(RelayContactError, match=message):
-            COMPONENT.started(values)
+@pytest.mark.parametrize(
+    ("spring", "given", "message"),
+    [
+        (SPRING, {"contact.overtravel": 1e-4, "contact_overtravel": 3e-4}, r"^contact.overtravel: given twice"),
+        *(
+            (SPRING, {"spring.thickness": factor}, r"spring.thickness = .*a factor greater than 0")
+            for factor in ("thick", 0.0, -1.0, float("nan"))
+        ),
+        ("segment = 3\n", {"spring.thickness": 1.1}, r"spring.toml:1: segment"),
+        ("[[segment]]\nlength = 'a'\n", {"spring.thickness": 1.1}, r"spring.toml:2: segment 1: length"),
+        ("[", {"spring.thickness": 1.1}, "TOML"),
+    ],
+)
+def test_an_instance_of_wrong_values_does_not_begin(tmp_path: Path, spring: str, given: Any, message: str) -> None:  # noqa: ANN401
+    path = tmp_path / "spring.toml"
+    path.write_text(spring, encoding="utf-8")
+    with pytest.raises(RelayContactError, match=message):
+        COMPONENT.started({"beam.file": str(path), **given})
 
 
 @pytest.mark.parametrize(
@@ -476,6 +469,7 @@ def test_a_spring_file_is_refused_before_its_entries_are_changed(tmp_path: Path)
             ["--set", "tip.mass=0", "--set", "tip_mass=1e-5"],
             "relay-contact: --set tip_mass=1e-5: tip.mass is given twice",
         ),
+        (["--set", "beam.lenght=1"], "relay-contact: beam.lenght: no such variable; did you mean beam.length?\n"),
         (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
     ],
 )

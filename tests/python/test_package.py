@@ -41,15 +41,6 @@ def test_a_run_has_names_and_units() -> None:
         result["contact.farce"]
 
 
-def test_changes_by_either_spelling_and_choices_by_name() -> None:
-    dotted: Any = {"excitation.amplitude": 50.0, "effects.contactLaw": "Bonded"}
-    first = run("paper-1khz", component=COMPONENT, stop=1e-3, **dotted)
-    other = run("paper-1khz", component=COMPONENT, stop=1e-3, excitation_amplitude=50.0, effects_contactLaw="Bonded")
-    assert np.array_equal(first["contact.force"], other["contact.force"])
-    unchanged = run("paper-1khz", component=COMPONENT, stop=1e-3)
-    assert not np.array_equal(first["contact.force"], unchanged["contact.force"])
-
-
 def test_an_input_course_is_linear_between_its_points() -> None:
     """The published sine as an input."""
     exact = run("paper-1khz", component=COMPONENT, stop=2e-3, solver_tolerance=1e-8)["contact.force"]
@@ -106,9 +97,7 @@ def test_the_command_passes_on_all_options_of_a_qualification(monkeypatch: pytes
     }  # fmt: skip
 
 
-def test_the_command_explains_what_is_wrong(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", "paper-1khz", "--set", "beam.lenght=1"]) == 1
-    assert capsys.readouterr().err == "relay-contact: beam.lenght: no such variable; did you mean beam.length?\n"
+def test_the_command_lists_variables_with_their_choices(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list", "--variables", "contactLaw"]) == 0
     assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded, Rough]" in capsys.readouterr().out
 
