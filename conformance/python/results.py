@@ -20,7 +20,7 @@ SYSTEM = FOLDER / "two-contacts.ssp"
 STEP = 1e-5
 TOLERANCE = 1e-7
 # Choices of the published run by number: Sine, FromPreload.
-PUBLISHED = {"effects.excitation": 2, "effects.axialForce": 1}
+PUBLISHED = {"effects.excitation": 2.0, "effects.axialForce": 1.0}
 # Acceleration of the frame of the two contacts, m/s2.
 JUMP = 50.0
 # In the first run the importer hands over the numbers that our own run took, so nothing is allowed for. The second of

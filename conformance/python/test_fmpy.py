@@ -85,13 +85,6 @@ def test_derivatives_of_inputs_are_set_after_each_step() -> None:
     assert 0.2 < errors[1] / (math.pi / 100) ** 2 < 5
 
 
-def test_no_stop_time() -> None:
-    settings = {"stop_time": 0.02, "output_interval": 1e-3, "output": ["contact.force"]}
-    with_stop = simulate_fmu(str(FMU), **settings)
-    without = simulate_fmu(str(FMU), set_stop_time=False, **settings)
-    assert np.array_equal(with_stop, without)
-
-
 def test_a_communication_point_at_every_event() -> None:
     """The recipe of docs/importers.md: back to an event that a step reports, as often as there is an earlier one."""
     text = (ROOT / "docs" / "importers.md").read_text(encoding="utf-8")

@@ -34,9 +34,11 @@ class Execution:
         self.observer = CosimObserver.create_last_value()
         assert execution.add_observer(self.observer)
 
-    def add(self, name: str, fmu: Path = FMU) -> None:
-        """Add an instance of the component."""
+    def add(self, name: str, fmu: Path, start: dict[str, float]) -> None:
+        """Add an instance of the component with the start values of real variables."""
         assert self.execution.add_local_slave(CosimLocalSlave(str(fmu), name)) >= 0
+        for variable, value in start.items():
+            assert self.execution.real_initial_value(*self.find(name, variable), value)
 
     def find(self, name: str, variable: str) -> tuple[int, int]:
         """Give the index of an instance and the value reference of its variable."""
@@ -44,13 +46,9 @@ class Execution:
         variables = self.execution.slave_variables(index)
         return index, next(each.reference for each in variables if each.name == variable.encode())
 
-    def start(self, name: str, variable: str, value: float) -> None:
-        """Set the start value of a real variable."""
-        assert self.execution.real_initial_value(*self.find(name, variable), value)
-
-    def force(self, name: str) -> float:
-        """Give the contact force of an instance."""
-        index, reference = self.find(name, "contact.force")
+    def value(self, name: str, variable: str) -> float:
+        """Give a real variable of an instance."""
+        index, reference = self.find(name, variable)
         return float(self.observer.last_real_values(index, [reference])[0])
 
     def forces(self, name: str, steps: int) -> list[float]:
@@ -58,14 +56,13 @@ class Execution:
         result = []
         for _ in range(steps):
             assert self.execution.step()
-            result.append(self.force(name))
+            result.append(self.value(name, "contact.force"))
         return result
 
 
 def test_a_sine_given_at_the_communication_points() -> None:
     run = Execution(CosimExecution.from_step_size(NANOSECONDS))
-    run.add("contact")
-    run.start("contact", "solver.tolerance", TOLERANCE)
+    run.add("contact", FMU, {"solver.tolerance": TOLERANCE})
     sine = CosimManipulator.create_override()
     assert run.execution.add_manipulator(sine)
     index, reference = run.find("contact", "base.acceleration")
@@ -78,9 +75,7 @@ def test_a_sine_given_at_the_communication_points() -> None:
 
 def test_the_published_run_by_a_choice_that_is_a_number() -> None:
     run = Execution(CosimExecution.from_step_size(NANOSECONDS))
-    run.add("contact", PLAIN)
-    for name, number in PUBLISHED.items():
-        run.start("contact", name, number)
+    run.add("contact", PLAIN, PUBLISHED)
     times = [n * NANOSECONDS / 1e9 for n in range(2001)]
     compare("libcosim", VERSION, "published run", run.forces("contact", 2000), start=1, expected=published(times))
 
@@ -94,9 +89,7 @@ def coupled(run: Execution, task: str) -> None:
 def test_two_instances_wired_together() -> None:
     run = Execution(CosimExecution.from_step_size(NANOSECONDS))
     for name in ["first", "second"]:
-        run.add(name)
-        run.start(name, "solver.tolerance", TOLERANCE)
-        run.start(name, "base.acceleration", JUMP)
+        run.add(name, FMU, {"solver.tolerance": TOLERANCE, "base.acceleration": JUMP})
     carried = *run.find("first", "tip.displacement"), *run.find("second", "support.displacement")
     assert run.execution.connect_real_variables(*carried) == 0
     coupled(run, "two coupled")
@@ -119,10 +112,7 @@ def test_two_springs_in_one_system_are_not_taken_for_each_other(tmp_path: Path) 
             changed.write(fmu, f"resources/{fmu.name}")
     run = Execution(CosimExecution.from_ssp_file(str(system), NANOSECONDS))
     assert run.execution.step()
-    found = []
-    for name in ["first", "second"]:
-        index, reference = run.find(name, "preload.frequency")
-        found.append(float(run.observer.last_real_values(index, [reference])[0]))
+    found = [run.value(name, "preload.frequency") for name in ("first", "second")]
     with Component(FMU).started() as uniform, Component(SPRUNG).started() as tapered:
         expected = [each.get("preload.frequency") for each in (uniform, tapered)]
     assert found == expected
