@@ -293,25 +293,23 @@ def test_errors_in_a_standard_have_their_line(tmp_path: Path, old: str, new: str
         Standard.read(path)
 
 
-def test_a_monitor_between_the_contact_at_rest_and_open(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        # The published preload of 0.152 N by the power law: 7.4118e-3 Ohm / 0.152^0.9515 = 44 mOhm.
+        ("[monitor]\nvoltage = 1e-3\ncurrent = 0.1\n",
+         r"a monitor of .* from 0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest"),
+        ("[monitor]\nvoltage = 10.0\ncurrent = 1e-8\n",
+         r"a monitor of .* from 1e\+09 Ohm on: not allowed, the contact has 1e\+09 Ohm while it is open"),
+        ("[parameters]\neffects.parallelContact = true\nparallel.offset = -1e-3\n",
+         r"parallel.offset = -0.001 m: .* exchange both"),
+    ],
+)  # fmt: skip
+def test_a_relay_whose_contact_is_not_seen_to_open_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    """By its monitor, or as the first of twin contacts bears no force."""
     relay = tmp_path / "relay.toml"
-    # The published preload of 0.152 N by the power law: 7.4118e-3 Ohm / 0.152^0.9515 = 44 mOhm.
-    for monitor, message in (
-        ("voltage = 1e-3\ncurrent = 0.1\n", r"0.01 Ohm on: not allowed, the contact has 0.0445 Ohm at rest"),
-        (
-            "voltage = 10.0\ncurrent = 1e-8\n",
-            r"1e\+09 Ohm on: not allowed, the contact has 1e\+09 Ohm while it is open",
-        ),
-    ):
-        relay.write_text(f"[monitor]\n{monitor}")
-        with pytest.raises(RelayContactError, match=rf"position 1: a monitor of .* from {message}"):
-            qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
-
-
-def test_the_first_of_twin_contacts_bears_a_force(tmp_path: Path) -> None:
-    relay = tmp_path / "relay.toml"
-    relay.write_text("[parameters]\neffects.parallelContact = true\nparallel.offset = -1e-3\n")
-    with pytest.raises(RelayContactError, match=r"position 1: parallel.offset = -0.001 m: .* exchange both"):
+    relay.write_text(text)
+    with pytest.raises(RelayContactError, match=f"position 1: {message}"):
         qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 

@@ -4,8 +4,6 @@ import re
 import threading
 import time
 import warnings
-from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -202,7 +200,9 @@ def test_instances_serve_one_run_after_another() -> None:
         contact.get("contact.force")
 
 
-def test_work_within_work_shares_the_cores() -> None:
+def test_work_within_work_shares_the_cores_and_leaves_them_free() -> None:
+    threads = threading.active_count()
+
     def shares(_: int) -> list[int | None]:
         return [SHARE.get(), *side_by_side(lambda _: SHARE.get(), range(2))]
 
@@ -210,35 +210,29 @@ def test_work_within_work_shares_the_cores() -> None:
     assert side_by_side(shares, range(3), 2) == [[1, 1, 1]] * 3
     assert SHARE.get() is None
     assert cores() >= 1
+    assert threading.active_count() == threads
 
 
 @pytest.mark.parametrize("kind", [RelayContactError, IndexError, StopIteration])
-def test_an_error_of_own_work_ends_it(kind: type[Exception]) -> None:
+@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("of_work", [True, False])
+def test_an_error_of_own_work_or_of_what_is_told_ends_it(kind: type[Exception], workers: int, of_work: bool) -> None:
     begun: list[int] = []
+    threads = threading.active_count()
+
+    def fail() -> None:
+        raise kind("the third")
 
     def work(item: int) -> None:
         begun.append(item)
         time.sleep(1e-3)
-        if item == 3:
-            raise kind("the third")
+        if of_work and item == 3:
+            fail()
 
-    for workers in (1, 2):
-        begun.clear()
-        with pytest.raises(kind, match="the third"):
-            side_by_side(work, range(1000), workers)
-        assert len(begun) < 900
-
-
-def test_an_error_of_what_is_told_ends_it() -> None:
-    begun: list[int] = []
-
-    def work(item: int) -> None:
-        begun.append(item)
-        time.sleep(1e-2)
-
-    with pytest.raises(ZeroDivisionError):
-        side_by_side(work, range(1000), 2, lambda: 1 / 0)
+    with pytest.raises(kind, match="the third"):
+        side_by_side(work, range(1000), workers, (lambda: None) if of_work else fail)
     assert 0 < len(begun) < 900
+    assert threading.active_count() == threads
 
 
 def test_warnings_are_kept_in_the_order_of_the_items() -> None:
@@ -257,11 +251,3 @@ def test_warnings_are_kept_in_the_order_of_the_items() -> None:
     finally:
         KEPT.reset(before)
     assert list(kept.values()) == ["slept 0.05 s"]
-
-
-@pytest.mark.parametrize("end", [lambda: None, lambda: 1 / 0])
-def test_the_cores_are_free_again_after_it(end: Callable[[], object]) -> None:
-    threads = threading.active_count()
-    with suppress(ZeroDivisionError):
-        side_by_side(lambda _: end(), range(4), 2)
-    assert threading.active_count() == threads

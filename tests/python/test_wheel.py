@@ -153,11 +153,8 @@ def test_the_command_lists_and_runs_scenes(installed: Path, tmp_path: Path) -> N
     assert "paper-1khz" in run(command, "list", folder=tmp_path)
     printed = run(command, "run", "paper-1khz", "--stop", "0.002", "--set", "excitation.frequency=500", folder=tmp_path)
     table = tmp_path / "paper-1khz,excitation.frequency=500.csv"
-    assert str(table.name) in printed
-    with table.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    assert len(rows) == 201
-    assert list(rows[0]) == ["time", "contact.force", "contact.resistance"]
+    assert table.name in printed
+    assert table.read_text(encoding="utf-8").startswith("time,contact.force,contact.resistance\n")
     assert table.with_suffix(".png").read_bytes().startswith(b"\x89PNG")
 
 
