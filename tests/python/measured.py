@@ -52,7 +52,7 @@ def deflection(values: Values, time: Array) -> Array:
     bent = modes.tip * 1e-4 * spring.tip_stiffness / modes.omega_squared
     decay = modes.damping / 2
     own = np.sqrt(modes.omega_squared - decay**2 + 0j)
-    since = np.multiply.outer(time, np.ones(len(own)))
+    since = time[:, None]
     # Roots of each mode; modes above a frequency do not oscillate.
     slow, fast = -decay + 1j * own, -decay - 1j * own
     shape = (fast * np.exp(slow * since) - slow * np.exp(fast * since)) / (fast - slow)
@@ -130,13 +130,9 @@ def record(length: float, rate: float, noise: float, seed: int) -> list[Measurem
     ]
 
 
-def rough(overtravel: float, **changes: float) -> Reference:
-    """Return ROUGH as the second solution, linear about its preload at an overtravel (m).
-
-    With other values of parameters, underscores in place of dots.
-    """
-    other = {name.replace("_", "."): value for name, value in changes.items()}
-    return Reference({**ROUGH, **other, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
+def rough(overtravel: float, values: dict[str, float] = ROUGH) -> Reference:
+    """Return a relay with a rough contact as the second solution, linear about its preload at an overtravel (m)."""
+    return Reference({**values, "effects.contactLaw": "Rough", "contact.overtravel": overtravel})
 
 
 @cache

@@ -127,8 +127,8 @@ def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_pat
 
 def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
     """The frequencies of a contact with a larger exponent than the component allows; and a start at the end."""
-    relays = (measured.rough(each, contact_stiffnessExponent=0.94) for each in measured.OVERTRAVELS)
-    steep = np.array([each.frequency() for each in relays])
+    steeper = {**measured.ROUGH, "contact.stiffnessExponent": 0.94}
+    steep = np.array([measured.rough(each, steeper).frequency() for each in measured.OVERTRAVELS])
     for start in (0.5, 0.9):
         data, relay = rough_files(tmp_path, steep)
         relay.write_text(relay.read_text().replace("stiffnessExponent = 0.5", f"stiffnessExponent = {start}"))

@@ -184,14 +184,6 @@ def test_a_run_warns_of_a_peak_between_its_communication_points(step: float, cut
     assert [text.startswith(told) for text in warnings] == [True] * cut
 
 
-def test_inputs_with_rows_that_the_run_would_pass_over_are_refused_in_its_row() -> None:
-    table = {"time": np.array([0.0, 1e-3, 2e-3]), "base.acceleration": np.zeros(3)}
-    cases = [Scene("", 5e-3, step, ["contact.force"], {}, table) for step in (1e-3, 1.02e-3)]
-    errors = run_many(cases, component=COMPONENT)["error"].tolist()
-    assert errors[0] == ""
-    assert errors[1].startswith("communication step = 0.00102 s: not allowed, allowed is at most 0.001 s")
-
-
 @pytest.mark.parametrize("name", [name for name, path in scenes().items() if "file = " in path.read_text("utf-8")])
 def test_inputs_of_the_scenes_included_cover_their_runs(name: str) -> None:
     assert Scene.read(name).uncovered() == []
