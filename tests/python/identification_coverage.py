@@ -28,7 +28,6 @@ from relay_contact.qualification import Relay, relays
 
 CELLS = [(0.25, 1e4, 0.01), (0.1, 1e4, 0.01), *product((0.01, 1.0), (2e3, 5e4), (0.001, 0.05))]
 """Length (s), rows per second and scatter of ring-downs: two in the middle, then the ends of all three."""
-FEWEST = 10  # sets that determine a parameter, for a share
 
 laboratory = cache(lambda: Laboratory(COMPONENT))
 clean = cache(lambda: measured.exact(measured.TRUTH))

@@ -163,9 +163,9 @@ class Reference:
         clamp = np.linalg.solve(np.array([moment[2:4], shear[2:4]]), loads)
         return end[:2, 2:4] @ clamp + np.outer(end[:2, 4], [0, 0, 1])
 
-    def compliances(self, omega: float, axial_force: float, damped: bool = True) -> Any:  # noqa: ANN401
+    def compliances(self, omega: float, axial_force: float) -> Any:  # noqa: ANN401
         """Tip deflection (m) per tip force (N) and per base acceleration (m/s2), at an angular frequency; exact."""
-        return self.responses(omega, axial_force, damped)[0, [0, 2]]
+        return self.responses(omega, axial_force)[0, [0, 2]]
 
     def force_response(self, frequency: float) -> complex:
         """Contact force (N) per base acceleration (m/s2) of the linear contact, at a frequency (Hz); exact."""
