@@ -63,3 +63,9 @@ def test_without_a_generator_nothing_moves() -> None:
     for kind, size in kinds.items():
         assert np.ptp(force({"effects.excitation": kind, f"excitation.{size}": 0.0})) == 0.0
         assert np.ptp(force({"effects.excitation": kind})) > 1e-3
+
+
+def test_a_displacement_limit_out_of_reach_limits_nothing() -> None:
+    for generator in (SINE, UP):
+        free, limited = force(generator), force({**generator, "excitation.displacementLimit": 1.0})
+        assert (free == limited).all()
