@@ -1,12 +1,12 @@
-//! The second contact of a changeover relay: its mirror image, its absence, and impacts. Its motion between contacts that
+//! The second contact of a changeover relay: its mirror image, its absence, and energy. Its motion between contacts that
 //! move, its false makes and the smallest gap are compared with another solution in `tests/python/test_second_contact.py`.
 
-mod impacts;
-
 use relay_contact::inputs::Inputs;
+use relay_contact::reference::{Law, Model};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
+use testing::rig::Rig;
 use testing::scenes::accelerated;
 
 /// A relay whose moving contact lies open in the middle between both fixed ones.
@@ -129,6 +129,45 @@ fn a_far_second_contact_changes_nothing() {
             assert!(alone.real(RealOutput::ContactLastOpening) > 0.0, "{kind:?} does not open");
         }
     }
+}
+
+/// Nothing adds up over the impacts on contacts of different radius on both sides.
+#[test]
+fn no_energy_is_made_or_lost_between_two_undamped_stops() {
+    const IMPACTS: u32 = 2000;
+    let mut scene = changeover(1e-5);
+    scene.effects.contact_damping = false;
+    scene.second.curvature_radius = 0.3 * scene.contact.curvature_radius;
+    scene.beam.stiffness_damping = 0.0;
+    scene.solver.modes = 6;
+    scene.solver.tolerance = 1e-6;
+    let model = Model::new(&scene, 0.0).unwrap();
+    let mut rig = Rig::new(model);
+    rig.throw(-0.05);
+    // By Hertz the coefficient has the root of the radius, N/m^1.5.
+    let Law::Power(hertz) = rig.model.law else { panic!() };
+    let second = 0.3_f64.sqrt() * hertz.coefficient;
+    // Open at rest: the modes, the first contact and the second.
+    let energy = |rig: &Rig| {
+        let indentation = -rig.state.contact().approach - scene.second.gap;
+        rig.energy() + 0.4 * second * indentation.max(0.0).powf(2.5)
+    };
+    let start = energy(&rig);
+    let (mut closings, mut last, mut point, mut off) = ([0, 0], [None; 2], 0_u32, 0.0_f64);
+    while closings[0] + closings[1] < IMPACTS {
+        point += 1;
+        rig.run_to(&Inputs::default(), 1e-5 * f64::from(point)).unwrap();
+        for (n, link) in rig.state.links.iter().take(2).enumerate() {
+            let now = link.last_closing;
+            if now > last[n] {
+                (closings[n], last[n]) = (closings[n] + 1, now);
+            }
+        }
+        off = off.max((energy(&rig) / start - 1.0).abs());
+    }
+    assert!(closings.iter().all(|closings| *closings > IMPACTS / 4), "{closings:?}");
+    // The bar of the hard cases: relative to the energy as the force is to its scale.
+    assert!(off <= scene.solver.tolerance, "{off:e}");
 }
 
 /// A contact that is closed at the start has not been made; each make after an interruption counts.
