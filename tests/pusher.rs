@@ -1,4 +1,6 @@
-//! A pusher between clamp and contact: statics, against the second contact that it is at the tip, and energy.
+//! A pusher between clamp and contact: statics and frequency, against the second contact that it is at the tip, and energy.
+
+use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
@@ -6,6 +8,8 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ContactLawKind, PusherKind, RealOutput};
 use testing::scenes::{bending_stiffness, shaken};
 use testing::{close, near};
+
+use crate::spring::reference::{Stretch, frequencies};
 
 /// A contact open by 0.1 mm without a pusher, and the specimen without its rivet.
 fn pushed(mut scene: Scene) -> Scene {
@@ -121,40 +125,16 @@ fn energy_is_kept_where_the_spring_leaves_the_pusher() {
     assert!(left, "the spring leaves the pusher: {least}");
 }
 
-/// The frequency of the modes with contact and pusher as springs, against that of a run.
+/// That of a beam on an elastic support within its length and another at its end.
 #[test]
-fn the_frequency_is_that_of_free_motion() {
-    let mut scene = pushed(Scene::default());
-    scene.solver.tolerance = 1e-9;
-    scene.beam.stiffness_damping = 0.0;
-    scene.contact.damping = 0.0;
-    scene.pusher.damping = 0.0;
-    let mut simulation = Simulation::new(&scene, &at(5e-4), 0.0).unwrap();
-    let frequency = simulation.model().frequency;
-    // A small push, and where the force passes its mean.
-    let push = Inputs { base_acceleration: 1e-3, ..at(5e-4) };
-    let (size, steps) = (0.02 / frequency, 2000);
-    let force = simulation.real(RealOutput::ContactForce);
-    let mut forces = vec![force];
-    for n in 0..steps {
-        simulation.step(&push, f64::from(n) * size, size).unwrap();
-        forces.push(simulation.real(RealOutput::ContactForce));
-    }
-    // All modes swing about the new equilibrium: the largest of the spectrum near the frequency, by least squares.
-    let mean = forces.iter().sum::<f64>() / forces.len() as f64;
-    let power = |f: f64| {
-        let (mut c, mut s) = (0.0, 0.0);
-        for (n, force) in forces.iter().enumerate() {
-            let t = n as f64 * size;
-            // Hann's window: the other modes stay out.
-            let window = (std::f64::consts::PI * n as f64 / f64::from(steps)).sin().powi(2);
-            let phase = std::f64::consts::TAU * f * t;
-            c += window * (force - mean) * phase.cos();
-            s += window * (force - mean) * phase.sin();
-        }
-        c * c + s * s
+fn the_frequency_is_that_of_a_beam_with_contact_and_pusher_as_springs() {
+    let scene = pushed(Scene::default());
+    let model = Simulation::new(&scene, &at(5e-4), 0.0).unwrap().model().clone();
+    let (section, x) = (model.section, scene.pusher.position);
+    let stretch = |length, support| Stretch {
+        support,
+        ..Stretch::uniform(length, section.bending_stiffness, section.mass_per_length)
     };
-    let near: Vec<f64> = (-100..=100).map(|k| frequency * (1.0 + 1e-4 * f64::from(k))).collect();
-    let best = near.iter().copied().max_by(|a, b| power(*a).total_cmp(&power(*b))).unwrap();
-    assert!((best - frequency).abs() <= 2.1e-4 * frequency, "{best} {frequency}");
+    let stretches = [stretch(x, scene.pusher.stiffness), stretch(section.length - x, model.preload.contact_stiffness)];
+    close("Hz", TAU * model.frequency, frequencies(&stretches, f64::INFINITY, 20.0, 1)[0], 1e-6);
 }
