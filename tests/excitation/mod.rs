@@ -9,62 +9,40 @@ use std::f64::consts::{PI, TAU};
 
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Generator;
-use relay_contact::scene::Scene;
+use relay_contact::scene::{Excitation, Scene};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ExcitationKind, IntegerOutput, RealOutput};
 
 /// Standard acceleration of gravity, m/s2.
 const G: f64 = 9.806_65;
 
-/// A scene with the generator, 98 m/s2 from `start` on.
-fn excited(kind: ExcitationKind, start: f64) -> Scene {
+/// A scene with the generator, 98 m/s2, from `start` on, with what differs from the start values.
+fn excited(kind: ExcitationKind, start: f64, change: impl FnOnce(&mut Excitation)) -> Scene {
     let mut scene = Scene::default();
     scene.effects.excitation = kind;
     scene.excitation.start_time = start;
+    change(&mut scene.excitation);
     scene
 }
 
 fn sweep(start: f64, frequency: f64, end_frequency: f64, duration: f64) -> Scene {
-    let mut scene = excited(ExcitationKind::LogSweep, start);
-    scene.excitation.frequency = frequency;
-    scene.excitation.end_frequency = end_frequency;
-    scene.excitation.duration = duration;
-    scene
+    excited(ExcitationKind::LogSweep, start, |sweep| {
+        (sweep.frequency, sweep.end_frequency, sweep.duration) = (frequency, end_frequency, duration);
+    })
 }
 
 fn half_sine(start: f64, amplitude: f64, duration: f64) -> Scene {
-    let mut scene = excited(ExcitationKind::HalfSine, start);
-    scene.excitation.amplitude = amplitude;
-    scene.excitation.duration = duration;
-    scene
+    excited(ExcitationKind::HalfSine, start, |shock| (shock.amplitude, shock.duration) = (amplitude, duration))
 }
 
 fn random(start: f64, frequency: f64, end_frequency: f64, density: f64) -> Scene {
-    let mut scene = excited(ExcitationKind::Random, start);
-    scene.excitation.frequency = frequency;
-    scene.excitation.end_frequency = end_frequency;
-    scene.excitation.spectral_density = density;
-    scene
+    excited(ExcitationKind::Random, start, |noise| {
+        (noise.frequency, noise.end_frequency, noise.spectral_density) = (frequency, end_frequency, density);
+    })
 }
 
-fn rising(start: f64, rise_time: f64) -> Scene {
-    let mut scene = excited(ExcitationKind::Sine, start);
-    scene.excitation.rise_time = rise_time;
-    scene
-}
-
-fn limited(mut scene: Scene, limit: f64) -> Scene {
-    scene.excitation.displacement_limit = limit;
-    scene
-}
-
-fn phased(mut scene: Scene, phase: f64) -> Scene {
-    scene.excitation.phase = phase;
-    scene
-}
-
-fn pulling(mut scene: Scene) -> Scene {
-    scene.excitation.amplitude = -scene.excitation.amplitude;
+fn with(mut scene: Scene, change: impl FnOnce(&mut Excitation)) -> Scene {
+    change(&mut scene.excitation);
     scene
 }
 
@@ -125,16 +103,24 @@ fn closed_form(scene: &Scene, time: f64) -> f64 {
 fn every_waveform() -> Vec<(&'static str, Scene)> {
     let start = 3e-4;
     vec![
-        ("sine", phased(excited(ExcitationKind::Sine, start), 0.7)),
-        ("limited sine", limited(excited(ExcitationKind::Sine, start), 1e-6)),
-        ("rising sine", phased(rising(start, 1.7e-3), 0.7)),
+        ("sine", excited(ExcitationKind::Sine, start, |sine| sine.phase = 0.7)),
+        ("limited sine", excited(ExcitationKind::Sine, start, |sine| sine.displacement_limit = 1e-6)),
+        ("rising sine", excited(ExcitationKind::Sine, start, |sine| (sine.rise_time, sine.phase) = (1.7e-3, 0.7))),
         ("half sine", half_sine(start, 300.0, 2e-3)),
-        ("sweep up", phased(sweep(start, 300.0, 3000.0, 2e-3), -0.4)),
-        ("sweep down", phased(sweep(start, 3000.0, 300.0, 2e-3), 0.4)),
-        ("sweep over the crossover", limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6)),
+        ("sweep up", with(sweep(start, 300.0, 3000.0, 2e-3), |sweep| sweep.phase = -0.4)),
+        ("sweep down", with(sweep(start, 3000.0, 300.0, 2e-3), |sweep| sweep.phase = 0.4)),
+        ("sweep over the crossover", with(sweep(start, 300.0, 3000.0, 2e-3), |sweep| sweep.displacement_limit = 3e-6)),
         ("random", random(start, 100.0, 2500.0, 4.0)),
         ("pulling half sine", half_sine(start, -300.0, 2e-3)),
-        ("pulling limited sine", pulling(limited(excited(ExcitationKind::Sine, start), 1e-6))),
-        ("pulling sweep over the crossover", pulling(limited(sweep(start, 300.0, 3000.0, 2e-3), 3e-6))),
+        (
+            "pulling limited sine",
+            excited(ExcitationKind::Sine, start, |sine| (sine.amplitude, sine.displacement_limit) = (-98.0, 1e-6)),
+        ),
+        (
+            "pulling sweep over the crossover",
+            with(sweep(start, 300.0, 3000.0, 2e-3), |sweep| {
+                (sweep.amplitude, sweep.displacement_limit) = (-98.0, 3e-6);
+            }),
+        ),
     ]
 }

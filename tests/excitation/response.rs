@@ -6,9 +6,7 @@ use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, Re
 use testing::near;
 use testing::scenes::{LAWS, accelerated, force_scale};
 
-use super::{
-    G, Generator, closed_form, equal_steps, every_waveform, forces, half_sine, limited, random, sweep, undriven,
-};
+use super::{G, Generator, closed_form, equal_steps, every_waveform, forces, half_sine, random, sweep, undriven, with};
 
 /// The same course from outside, in straight pieces, is wrong by the square of their length.
 #[test]
@@ -147,7 +145,7 @@ fn extreme_waveforms_are_integrated() {
         sweep(0.0, 1e-3, 1e6, 1e9),
         sweep(0.0, 1e6, 1e-3, 1e-4),
         sweep(0.0, 1e-3, 1e6, 1e-4),
-        limited(sweep(0.0, 1e-3, 1e6, 1e-4), 1.0),
+        with(sweep(0.0, 1e-3, 1e6, 1e-4), |sweep| sweep.displacement_limit = 1.0),
         random(0.0, 1e-3, 1e6, 1.0),
         random(0.0, 1e-3, 2e-3, 1e9),
         random(0.0, 1000.0, 1000.0 + 1e-12, 1e9),

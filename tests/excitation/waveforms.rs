@@ -5,7 +5,7 @@ use testing::near;
 
 use relay_contact::variables::ExcitationKind;
 
-use super::{G, Generator, closed_form, every_waveform, excited, half_sine, limited, phased, sweep};
+use super::{G, Generator, closed_form, every_waveform, excited, half_sine, sweep, with};
 
 #[test]
 fn waveforms_are_those_of_their_closed_forms() {
@@ -25,12 +25,12 @@ fn waveforms_are_those_of_their_closed_forms() {
 
 #[test]
 fn a_sweep_between_like_frequencies_is_the_sine() {
-    let sine = Generator::new(&phased(excited(ExcitationKind::Sine, 0.0), 0.3));
+    let sine = Generator::new(&excited(ExcitationKind::Sine, 0.0, |sine| sine.phase = 0.3));
     // Turns that the sweep is ahead: f tau (r - 1) tau / 2 D.
     for (end_frequency, part) in
         [(1000.0, 0.0), (1000.0 + 2e-12, 2e-15), (1000.0 + 1e-9, 1e-12), (1000.0 - 1e-9, -1e-12)]
     {
-        let near = Generator::new(&phased(sweep(0.0, 1000.0, end_frequency, 1e9), 0.3));
+        let near = Generator::new(&with(sweep(0.0, 1000.0, end_frequency, 1e9), |sweep| sweep.phase = 0.3));
         for tau in [0.0, 1e-4, 0.77, 1234.567, 1e6, 3.3e8 + 0.125] {
             let ahead = TAU * 1000.0 * tau * part * tau / 2e9;
             let difference = (near.acceleration(tau) - sine.acceleration(tau)).abs();
@@ -45,8 +45,9 @@ fn a_sweep_between_like_frequencies_is_the_sine() {
 fn the_displacement_limit_crosses_over_where_the_standard_does() {
     // MIL-STD-202 method 204 condition A: the lesser of 0.06 in double amplitude and 10 g crosses over at 57.10 Hz.
     let limit = 0.5 * 0.06 * 0.0254;
-    let mut scene = limited(sweep(0.0, 10.0, 500.0, 450.0), limit);
-    scene.excitation.amplitude = 10.0 * G;
+    let scene = with(sweep(0.0, 10.0, 500.0, 450.0), |sweep| {
+        (sweep.amplitude, sweep.displacement_limit) = (10.0 * G, limit);
+    });
     let crossover = Generator::new(&scene).next_break(0.0).unwrap();
     let frequency = 10.0 * 50_f64.powf(crossover / 450.0);
     assert!((frequency - 57.10).abs() < 0.005, "{frequency}");
