@@ -1,87 +1,61 @@
 //! The calibration of the integrator: the error stays below the tolerance asked, and a digit costs few steps. How much below,
 //! beside other integrators, is measured by the package `benches`.
 //!
-//! The error is the largest deviation of `contact.force` at the communication points from a reference, over the larger of the
-//! force scale and the largest force so far, as `solver.tolerance` promises. The reference has more modes and much shorter steps than the tightest run; a second reference with other modes and steps
-//! shows its own error. Costs are counts of integration steps, which are the same on every machine.
+//! The error is the largest deviation of `contact.force` and its extremes from a reference, over the larger of the force scale and the
+//! largest force so far, as `solver.tolerance` promises. The reference has more modes and much shorter steps than the tightest run; a
+//! second reference with other modes and steps shows its own error. Costs are counts of integration steps, which are the same on every machine.
 
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{IntegerOutput, RealOutput};
-use testing::scenes::{force_scale, shaken, supported};
+use relay_contact::variables::IntegerOutput;
+use testing::relays::{Course, Relay};
+use testing::scenes::{shaken, supported};
 
-/// A scene and how it is driven.
-struct Case {
-    name: &'static str,
-    scene: Scene,
-    /// Lengths of the communication steps, s.
-    steps: Vec<f64>,
-    /// `support.displacement` as a function of time, m; moves the contact from step to step.
-    support: fn(f64) -> f64,
-}
-
-impl Case {
-    /// Forces at the communication points, and the integration steps.
-    fn run(&self, tolerance: f64, modes: i32, maximum_step: f64) -> (Vec<f64>, i32) {
-        let mut scene = self.scene.clone();
-        scene.solver.tolerance = tolerance;
-        scene.solver.modes = modes;
-        scene.solver.maximum_step = maximum_step;
-        let mut simulation = Simulation::new(&scene, &supported((self.support)(0.0), 0.0), 0.0).unwrap();
-        let forces = self.steps.iter().map(|step| {
-            let time = simulation.time();
-            let inputs = supported((self.support)(time + step), 0.0);
-            simulation.step(&inputs, time, *step).unwrap();
-            simulation.real(RealOutput::ContactForce)
-        });
-        (forces.collect(), simulation.integer(IntegerOutput::SolverSteps))
-    }
-
-    fn error(&self, forces: &[f64], reference: &[f64]) -> f64 {
-        let mut scale = force_scale(&self.scene);
-        forces.iter().zip(reference).fold(0.0, |most, (own, exact)| {
-            scale = scale.max(*exact);
-            f64::max(most, (own - exact).abs() / scale)
-        })
-    }
-}
-
-/// The contact stays closed; opens and closes with blows, looked at closely after the first; is closed by its support.
-fn cases() -> Vec<Case> {
-    let shaken =
-        |name, amplitude, frequency, steps| Case { name, scene: shaken(amplitude, frequency), steps, support: |_| 0.0 };
-    let mut open = Scene::default();
-    open.contact.overtravel = -3e-5;
+/// The contact stays closed; opens and closes with blows; is closed by its support.
+fn relays() -> Vec<Relay> {
+    let shaken = |name, amplitude, frequency, steps| Relay::of(name, shaken(amplitude, frequency), steps);
+    let mut closing = Relay::of("closing by the support", Scene::default(), (1e-5, 300));
+    closing.scene.contact.overtravel = -3e-5;
+    // From 30 um of gap to the overtravel of the specimen and some more, within 1.5 ms.
+    closing.knots = (0..300).map(|k| supported(2.6e-4 * f64::from(k.min(150)) / 150.0, 0.0)).collect();
     vec![
-        shaken("98 m/s2 at 1000 Hz", 98.0, 1000.0, vec![1e-5; 500]),
-        shaken("98 m/s2 at 250 Hz", 98.0, 250.0, vec![2e-5; 500]),
-        shaken("98 m/s2 at 2000 Hz", 98.0, 2000.0, vec![1e-5; 500]),
-        shaken("98 m/s2 in one step per ms", 98.0, 1000.0, vec![1e-3; 10]),
-        shaken("chatter at 400 m/s2", 400.0, 1000.0, [vec![5e-6; 217], vec![2.5e-7; 40], vec![5e-6; 381]].concat()),
-        Case {
-            name: "closing by the support",
-            scene: open,
-            steps: vec![1e-5; 300],
-            // From 30 um of gap to the overtravel of the specimen and some more, within 1.5 ms.
-            support: |time| 2.6e-4 * (time / 1.5e-3).min(1.0),
-        },
+        shaken("98 m/s2 at 1000 Hz", 98.0, 1000.0, (1e-5, 500)),
+        shaken("98 m/s2 at 250 Hz", 98.0, 250.0, (2e-5, 500)),
+        shaken("98 m/s2 at 2000 Hz", 98.0, 2000.0, (1e-5, 500)),
+        shaken("98 m/s2 in one step per ms", 98.0, 1000.0, (1e-3, 10)),
+        shaken("chatter at 400 m/s2", 400.0, 1000.0, (2.5e-7, 12_000)),
+        closing,
     ]
+}
+
+fn run(relay: &Relay, tolerance: f64, modes: i32, maximum_step: f64) -> Course {
+    let (course, failure) = relay
+        .run(|scene| {
+            (scene.solver.tolerance, scene.solver.modes, scene.solver.maximum_step) = (tolerance, modes, maximum_step);
+        })
+        .unwrap();
+    assert_eq!(failure, None, "{}", relay.kind);
+    course
 }
 
 #[test]
 fn the_error_stays_below_the_tolerance_asked() {
     let mut failures = Vec::new();
-    for case in cases() {
-        let (reference, _) = case.run(1e-11, 34, 5e-7);
-        let own = case.error(&case.run(1e-11, 30, 1.1e-6).0, &reference);
-        assert!(own < 1e-8, "{}", case.name);
+    for relay in relays() {
+        let reference = run(&relay, 1e-11, 34, 5e-7);
+        let error = |tolerance, modes, maximum_step| {
+            let (force, extremes) = run(&relay, tolerance, modes, maximum_step).error(&reference);
+            force.max(extremes)
+        };
+        let own = error(1e-11, 30, 1.1e-6);
+        assert!(own < 1e-8, "{}: {own:e}", relay.kind);
         let tolerances = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10].into_iter();
         // What the reference itself does not know is not asked: microseconds after a blow of some newtons, 1e-9.
         for tolerance in tolerances.filter(|tolerance| *tolerance > 5.0 * own) {
-            let error = case.error(&case.run(tolerance, 0, 0.0).0, &reference);
+            let error = error(tolerance, 0, 0.0);
             if error > tolerance {
-                failures.push(format!("{}: asked {tolerance:e}, delivered {error:.2e}", case.name));
+                failures.push(format!("{}: asked {tolerance:e}, delivered {error:.2e}", relay.kind));
             }
         }
     }
@@ -90,10 +64,10 @@ fn the_error_stays_below_the_tolerance_asked() {
 
 #[test]
 fn a_digit_costs_less_than_half_as_much_again() {
-    for case in cases() {
-        let steps = |tolerance: f64| f64::from(case.run(tolerance, 0, 0.0).1);
+    for relay in relays() {
+        let steps = |tolerance: f64| f64::from(run(&relay, tolerance, 0, 0.0).steps);
         let per_digit = (steps(1e-10) / steps(1e-2)).powf(1.0 / 8.0);
-        assert!(per_digit < 1.5, "{}: {per_digit}", case.name);
+        assert!(per_digit < 1.5, "{}: {per_digit}", relay.kind);
     }
 }
 

@@ -94,6 +94,7 @@ const GROUPS: [Group; 10] = [
         (|scene, _| bonded(scene), &["effects.parallelContact"]),
         (|scene, _| rubbing(scene), &["effects.parallelContact"]),
         (|scene, _| following(scene), &["effects.parallelContact"]),
+        (|scene, _| with_mode(scene, None), &["own.toml", "parallel"]),
     ]),
     ("pusher", |scene| scene.effects.pusher = PusherKind::Prescribed, &[
         (|_, _| (), &[]),

@@ -8,7 +8,9 @@ use relay_contact::error::{SceneError, StepError};
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, BooleanOutput, ContactLawKind, ExcitationKind, RealOutput};
+use relay_contact::variables::{
+    AxialForceKind, BooleanOutput, ContactLawKind, ExcitationKind, IntegerOutput, RealOutput,
+};
 
 use crate::scenes::{propped_mass, tip_stiffness};
 
@@ -54,6 +56,8 @@ pub struct Course {
     pub events: Vec<f64>,
     /// `solver.forceError` at the end, 1.
     pub estimate: f64,
+    /// Integration steps.
+    pub steps: i32,
     /// Force scale of the tolerance, N.
     pub scale: f64,
 }
@@ -219,6 +223,7 @@ impl Relay {
                 course.greatest.push(if recorded { high } else { force });
             }
             course.estimate = simulation.real(RealOutput::SolverForceError);
+            course.steps = simulation.integer(IntegerOutput::SolverSteps);
         }
         Ok((course, None))
     }

@@ -52,17 +52,16 @@ pub fn forked(scene: &Scene, share: f64) -> Option<Arc<SpringFile>> {
     spring_file("forked.toml", Shape::Segments(segments))
 }
 
-/// The scene's spring by its modes, with their compliance.
-pub fn by_modes(scene: &Scene) -> Option<Arc<SpringFile>> {
-    let model = Model::new(scene, 0.0).expect("a scene that can be simulated");
-    let compliance = model.modes.iter().map(Mode::compliance).sum();
+/// The springs of a model by their modes, with the compliance of these.
+pub fn modes_of(model: &Model) -> Modes {
     let modes = model.modes.iter().map(|own| GivenMode {
         rotation: Some(own.rotation),
         pusher: Some(own.pusher),
         parallel: Some(own.parallel),
         ..mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation)
     });
-    spring_file("modes.toml", of_modes(compliance, modes))
+    let compliance = model.modes.iter().map(Mode::compliance).sum();
+    Modes { compliance, parallel_compliance: None, modes: modes.collect() }
 }
 
 /// A mode of this frequency (Hz) with what every mode has: displacement of the contact (1/sqrt(kg)), load per base acceleration

@@ -9,23 +9,16 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, RealOutput};
 use testing::close;
 use testing::scenes::{course, forces, largest_difference, shaken, supported};
-use testing::springs::{mode, of_modes, segment};
+use testing::springs::{mode, modes_of, of_modes, segment};
 
 use super::{TAU, with};
-
-/// The modes of a model, and the static compliance of its spring.
-fn written(model: &Model) -> Modes {
-    let modes = model.modes.iter();
-    let modes = modes.map(|own| mode(own.omega_squared.sqrt() / TAU, own.tip, own.participation));
-    Modes { compliance: 1.0 / model.section.tip_stiffness(), parallel_compliance: None, modes: modes.collect() }
-}
 
 #[test]
 fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
     for amplitude in [98.0, 400.0] {
         let scene = shaken(amplitude, 1000.0);
         let plain = Model::new(&scene, 0.0).unwrap();
-        let given = with(scene.clone(), Shape::Modes(written(&plain)));
+        let given = with(scene.clone(), Shape::Modes(modes_of(&plain)));
         let model = Model::new(&given, 0.0).unwrap();
         assert_eq!(model.modes.len(), plain.modes.len(), "nothing is missing in the Ritz modes");
         assert_eq!(model.remarks(), []);
@@ -46,7 +39,7 @@ fn modes_written_by_our_own_beam_and_read_again_are_the_beam() {
 /// Modes say what the rivet, the material and the place of a pusher do; tongues are joined where no second contact is on one.
 #[test]
 fn what_does_not_count_beside_a_file_is_told() {
-    let mut scene = with(Scene::default(), Shape::Modes(written(&Model::new(&Scene::default(), 0.0).unwrap())));
+    let mut scene = with(Scene::default(), Shape::Modes(modes_of(&Model::new(&Scene::default(), 0.0).unwrap())));
     (scene.tip.mass, scene.beam.density, scene.pusher.position) = (2e-4, 8000.0, 0.005);
     let names = |scene: &Scene| -> Vec<_> {
         let remarks = Model::new(scene, 0.0).unwrap().remarks();
@@ -77,7 +70,7 @@ fn what_does_not_count_beside_a_file_is_told() {
 #[test]
 fn damping_that_may_be_in_per_cent_is_told() {
     for (ratio, told) in [(0.34, false), (1.0, true)] {
-        let mut modes = written(&Model::new(&Scene::default(), 0.0).unwrap());
+        let mut modes = modes_of(&Model::new(&Scene::default(), 0.0).unwrap());
         // Higher modes may have any.
         (modes.modes[0].damping, modes.modes[1].damping) = (Some(ratio), Some(5.0));
         let scene = with(Scene::default(), Shape::Modes(modes));
@@ -93,11 +86,12 @@ fn the_compliance_of_modes_left_out_acts_as_a_spring_in_series() {
     scene.beam.stiffness_damping = 2e-6;
     let mut fine = scene.clone();
     fine.solver.modes = 64;
-    let all = written(&Model::new(&fine, 0.0).unwrap());
+    let all = modes_of(&Model::new(&fine, 0.0).unwrap());
     let expected = forces(&scene, 1e-4, 100);
     let swing = expected.iter().map(|force| (force - 0.152).abs()).fold(0.0, f64::max);
     let error = |count: usize| {
-        let modes = Modes { modes: all.modes[..count].to_vec(), ..all.clone() };
+        let modes = all.modes[..count].iter().map(|own| GivenMode { parallel: None, ..*own });
+        let modes = Modes { modes: modes.collect(), ..all.clone() };
         let scene = with(scene.clone(), Shape::Modes(modes));
         let model = Model::new(&scene, 0.0).unwrap();
         assert_eq!(model.modes.len(), count + 1);
@@ -139,7 +133,7 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
 #[test]
 fn each_mode_may_have_its_own_damping() {
     let scene = Scene::default();
-    let mut modes = written(&Model::new(&scene, 0.0).unwrap());
+    let mut modes = modes_of(&Model::new(&scene, 0.0).unwrap());
     for (n, mode) in modes.modes.iter_mut().enumerate() {
         mode.damping = (n > 0).then_some(0.03);
     }
