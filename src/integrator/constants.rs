@@ -162,7 +162,7 @@ pub const PIECES: usize = 8;
 // Axial force, rest, energy.
 
 /// Change of the contact force, in tolerances, that a contact at rest may still have before it, 1. Pinned: × 1e5,
-/// `rest_is_found_and_kept`.
+/// `motion_comes_to_rest_in_the_equilibrium_of_all_parts`.
 pub const UNREST: f64 = 1e-2;
 
 /// Change of the stiffness of the modes by an axial force that counts as small, 1: from 1 on that might vanish, and the
