@@ -453,4 +453,5 @@ class Contact:
     def step(self, time: float, length: float) -> None:
         """Do a communication step."""
         self.fmu.doStep(currentCommunicationPoint=time, communicationStepSize=length)
-        self.tell()
+        if len(self.warnings) > self.told:
+            self.tell()
