@@ -5,6 +5,7 @@ use std::{fs, ptr};
 
 use relay_contact::fmi2::{fmi2Discard, fmi2Error, fmi2GetFMUstate, fmi2OK, fmi2Status};
 use relay_contact::scene::file::SceneFile;
+use relay_contact::variables::ExcitationKind;
 use testing::allocator::Counting;
 use testing::instance::Instance;
 use testing::scenes::files;
@@ -32,7 +33,25 @@ fn allocations(contact: &Instance, size: f64, begin: impl Fn(u32)) -> usize {
     allocations
 }
 
-/// With all excitations and parts that the project's scenes have, and as much work as a step may make of it.
+/// With every choice of `effects.excitation`, while the contact opens and bounces.
+#[test]
+fn a_communication_step_allocates_nothing() {
+    for &(name, excitation) in ExcitationKind::CHOICES {
+        let contact = Instance::new();
+        assert_eq!(contact.set_integer("effects.excitation", excitation), fmi2OK);
+        assert_eq!(contact.set_boolean("effects.energy", true), fmi2OK);
+        contact.initialize();
+        let begin = |n| {
+            let base = if n % 100 < 50 { 2000.0 } else { -2000.0 };
+            let inputs = ["base.acceleration", "contact.current"];
+            assert_eq!(contact.set_reals(inputs, [base, 0.1]), fmi2OK);
+        };
+        assert_eq!(allocations(&contact, 1e-5, begin), 0, "{name}");
+        assert!(contact.real("contact.lastOpening") > 0.0, "events are not covered");
+    }
+}
+
+/// With all that the project's scenes have beside the contact, and as much work as a step may make of it.
 #[test]
 fn a_step_of_any_scene_allocates_nothing() {
     for path in files() {

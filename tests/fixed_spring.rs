@@ -1,14 +1,16 @@
-//! A fixed contact on a spring of its own: against its mirror image, and its statics, to which `equilibrium.rs` compares where it
-//! comes to rest. Forces on springs that differ are compared with finite elements in `tests/python/test_relay_parts.py`.
+//! A fixed contact on a spring of its own: against its mirror image, its statics, to which `equilibrium.rs` compares where it comes to
+//! rest, and its outputs. Forces on springs that differ are compared with finite elements in `tests/python/test_relay_parts.py`.
 
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::Model;
+use relay_contact::reference::{Mode, Model};
 use relay_contact::scene::Scene;
+use relay_contact::simulation::Simulation;
+use relay_contact::variables::RealOutput;
 use testing::rig::Rig;
-use testing::scenes::bending_stiffness;
-use testing::{close, springs};
+use testing::scenes::{bending_stiffness, shaken};
+use testing::{close, near, springs};
 
 /// The scene with a uniform fixed spring of this width and thickness over those of the moving one.
 fn on_spring(mut scene: Scene, width: f64, thickness: f64) -> Scene {
@@ -95,4 +97,39 @@ fn gravity_and_contact_force_bend_both_springs() {
     same(preload.deflection, moving);
     same(preload.fixed_deflection, fixed);
     same(preload.indentation, scene.contact.overtravel + 1e-5 + fixed - moving);
+}
+
+/// Outputs of both springs are those of their modes, also inside the integrator's steps, and the velocity is the derivative.
+#[test]
+fn the_fixed_contact_moves_as_its_outputs_say() {
+    let mut scene = on_spring(shaken(300.0, 700.0), 1.0, 1.5);
+    scene.solver.tolerance = 1e-8;
+    let outputs = [RealOutput::FixedDisplacement, RealOutput::FixedVelocity, RealOutput::TipDisplacement];
+    let (overtravel, step) = (scene.contact.overtravel, 1e-6);
+    let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    let (mut rows, mut furthest) = (Vec::new(), 0.0_f64);
+    for n in 0..6000 {
+        simulation.step(&Inputs::default(), f64::from(n) * step, step).unwrap();
+        let row @ [fixed, _, tip] = outputs.map(|output| simulation.real(output));
+        rows.push(row);
+        if n % 50 == 0 {
+            let state = simulation.state_now().unwrap();
+            let sum = |shape: fn(&Mode) -> f64| -> f64 {
+                let modes = simulation.model().modes.iter().zip(&state.modes);
+                modes.map(|(mode, at)| shape(mode) * at.q).sum()
+            };
+            let preload = simulation.model().preload;
+            let (moved, tip_moved) = (sum(|mode| mode.fixed), sum(|mode| mode.tip + mode.fixed));
+            // A part in 1e8 of the force bends a spring by that of its deflection.
+            near(n, fixed, preload.fixed_deflection + moved, 1e-8 * overtravel);
+            near(n, tip, preload.deflection + tip_moved, 1e-8 * overtravel);
+            furthest = furthest.max(moved.abs());
+        }
+    }
+    for (n, pair) in rows.windows(2).enumerate() {
+        let [[before, start, ..], [now, end, ..]] = pair else { panic!() };
+        // The trapezoidal rule is wrong by the third derivative, a_max omega step^3 / 12.
+        near(n, *now, before + 0.5 * step * (start + end), 1e-12);
+    }
+    assert!(furthest > 0.01 * overtravel, "{furthest}");
 }

@@ -8,8 +8,8 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{
     AxialForceKind, BooleanOutput, ContactLawKind, IntegerOutput, RealOutput, ResistanceKind,
 };
-use testing::scenes::{course, force_scale, forces, shaken, tip_stiffness};
-use testing::springs::{self, segment, spring_file};
+use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
+use testing::springs::{self, modes_of, segment, spring_file};
 use testing::{close, near};
 
 /// The scene with a parallel contact, equal to the first.
@@ -236,6 +236,22 @@ fn each_conducts_by_its_own_stiffness() {
         close("V", started.real(RealOutput::ContactVoltage), -10.0 / conductance, 1e-9);
         close("S", started.real(RealOutput::SecondConductance), open, 1e-15);
     }
+}
+
+/// Modes with the same tongues as a forked spring give the same forces.
+#[test]
+fn modes_of_a_forked_spring_are_that_spring() {
+    let mut scene = forked(pair(shaken(300.0, 700.0)), 0.5);
+    scene.parallel.offset = 1e-6;
+    scene.solver.modes = 12;
+    scene.effects.axial_force = AxialForceKind::None;
+    let mut given = scene.clone();
+    // The compliance of all modes: the same truncation on both sides.
+    given.spring = spring_file("modes.toml", Shape::Modes(modes_of(&Model::new(&scene, 0.0).unwrap())));
+    let [expected, found] = [&scene, &given].map(|scene| course(scene, 1e-5, 300, BOTH).0.concat());
+    // The segments' static compliance is that of all modes, here that of 24.
+    let difference = largest_difference(&found, &expected);
+    assert!(difference < 2e-3 * force_scale(&scene), "{difference}");
 }
 
 /// Also where one contact alone, or the bend that it makes, is far from what both hold.

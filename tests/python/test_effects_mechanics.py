@@ -4,6 +4,7 @@ from math import sqrt, tan, tanh
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from component import run
 from reference import Reference
@@ -11,6 +12,8 @@ from relay_contact import Array, Values
 from relay_contact.component import sine
 
 NO_AXIAL: Values = {"effects.axialForce": "None"}
+POWERS = ("Hertz", "Rough")
+LAWS = (*POWERS, "Linearised", "Bonded")
 FREQUENCY = 1000.0
 
 
@@ -19,7 +22,41 @@ def shaken(values: Values, amplitude: float, tolerance: float) -> Values:
     return {**values, **sine(FREQUENCY, amplitude), "solver.tolerance": tolerance}
 
 
-@pytest.mark.parametrize("law", ["Hertz", "Rough", "Linearised", "Bonded"])
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("acceleration", [300.0, -1000.0])
+def test_a_constant_acceleration_ends_in_the_equilibrium_of_the_law(law: str, acceleration: float) -> None:
+    tolerance = 1e-8
+    values: Values = {**NO_AXIAL, "effects.contactLaw": law, "base.acceleration": acceleration}
+    # The slowest motion is that of the cantilever alone, 294 Hz: it falls as exp(-137 t), to 1e-12 in the end.
+    output = ["contact.force", "contact.indentation"]
+    result = run({**values, "solver.tolerance": tolerance}, 0.2, 1e-2, output)
+    force, indentation = (result[name][-1] for name in output)
+    reference = Reference(values)
+    inertia = reference.carried_mass * acceleration
+
+    def spring(d: float) -> float:
+        return reference.tip_stiffness * (reference.overtravel - d) + inertia
+
+    def elastic(d: float) -> float:
+        if law in POWERS:
+            return float(reference.elastic(d))
+        linear = reference.force + reference.tangent * (d - reference.indentation)
+        return linear if law == "Bonded" else max(linear, 0.0)
+
+    expected = brentq(lambda d: elastic(d) - spring(d), -1e-3, 1e-3, xtol=1e-20)
+    assert (elastic(expected) < 0) == (law == "Bonded" and acceleration < 0)
+    assert (elastic(expected) == 0) == (law != "Bonded" and acceleration < 0)
+    allowed = tolerance * reference.force_scale
+    assert force == pytest.approx(elastic(expected), rel=0, abs=allowed)
+    # The indentation is as wrong as the force over the stiffness, of the contact or, where it is open, of the spring.
+    if elastic(expected) == 0:
+        stiffness = reference.tip_stiffness
+    else:
+        stiffness = float(reference.stiffness_at(expected)) if law in POWERS else reference.tangent
+    assert indentation == pytest.approx(expected, rel=0, abs=allowed / stiffness)
+
+
+@pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("damping", [True, False])
 def test_the_force_of_a_law_under_vibration_until_the_contact_closes_again(law: str, damping: bool) -> None:
     tolerance, amplitude, stop = 1e-7, 400.0, 1.06e-3
