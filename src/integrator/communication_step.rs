@@ -149,12 +149,9 @@ fn step_by<const EXTREMES: bool>(
     let until = time + size;
     // An importer's rounded time may put the end before the point already reached: no time passes then.
     let until = until.max(motion.time);
-    // Step sizes that differ by the rounding of time count as equal, except for exact linear steps.
-    let size = if model.closed_loop.is_none() && (size - motion.size).abs() <= f64::EPSILON * until.abs() {
-        motion.size
-    } else {
-        size
-    };
+    // Step sizes that differ by the rounding of time count as equal, except for exact linear steps. The first has none before it.
+    let is_repeated = motion.size > 0.0 && (size - motion.size).abs() <= f64::EPSILON * until.abs();
+    let size = if model.closed_loop.is_none() && is_repeated { motion.size } else { size };
     let since = motion.time;
     workspace.events.forget_until(since);
     // The fixed contacts move at constant velocity to their positions at the end of the step.

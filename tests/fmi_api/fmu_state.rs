@@ -118,6 +118,31 @@ fn bytes_that_are_no_state_are_an_error_that_says_which() {
     fmu.free(state);
 }
 
+/// Contents that a faulty writer has signed: an input or an instant that is no number, or is to come.
+#[test]
+fn a_state_that_no_simulation_reaches_is_refused_though_its_checksum_is_right() {
+    let fmu = shaken(450.0);
+    trace(&fmu, 0, 300, 1e-5);
+    let bytes: Vec<u8> = fmu.to_bytes(fmu.save()).into_iter().flat_map(fmi2Byte::to_ne_bytes).collect();
+    let (signed, _) = bytes.split_at(bytes.len() - 4);
+    for (output, wrong) in
+        [("contact.current", f64::NAN), ("contact.lastOpening", f64::INFINITY), ("contact.lastClosing", 1.0)]
+    {
+        let written = fmu.real(output).to_le_bytes();
+        let places: Vec<_> = (0..signed.len() - 8).filter(|at| signed[*at..].starts_with(&written)).collect();
+        assert!(!places.is_empty(), "{output}");
+        for at in places {
+            let mut changed = signed.to_vec();
+            changed[at..at + 8].copy_from_slice(&wrong.to_le_bytes());
+            changed.extend(crc32fast::hash(&changed).to_le_bytes());
+            let changed: Vec<_> = changed.into_iter().map(|byte| fmi2Byte::from_ne_bytes([byte])).collect();
+            let (status, made) = fmu.from_bytes(&changed);
+            assert!(status == fmi2Error && made.is_null(), "{output} at {at}");
+            fmu.expect_message(fmi2Error, &["serializedState", "no simulation can reach"]);
+        }
+    }
+}
+
 /// A relay whose coil current jumps, at a point that is off, with a derivative that has no effect, and whose tolerance is not kept: the
 /// bits of its outputs, and what is said.
 fn dropped(fmu: &Instance) -> (Vec<[u64; 12]>, Vec<String>) {
