@@ -255,6 +255,16 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
     assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
 }
 
+/// A jump of the velocity of the fixed contact makes a peak of force that is over within picoseconds, faster than any mode vibrates: the
+/// overdamped modes answer it with their fast roots, and with too few of them the peak is wrong.
+#[test]
+fn what_modes_left_out_do_to_a_jump_of_a_velocity_is_told() {
+    for (number, draw) in [(40_411, kinds::friction as Draw), (500_606, kinds::rough)] {
+        let judged = judge(number, draw, 0.0);
+        assert!(judged.error <= judged.tolerance || judged.estimate > judged.tolerance, "{judged:?}");
+    }
+}
+
 /// Openings and closings in the first three communication steps, s; each taken in steps of which the first has this length (s) and each
 /// of the others that of all before.
 fn events(relay: &Relay, first: f64) -> Vec<f64> {

@@ -22,6 +22,7 @@ use nalgebra::Complex;
 use crate::beam::mode::{Last, Mode, ModeStates, SPRINGS};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::Basis;
+use crate::math::free_motion::Roots;
 use crate::math::simd::LANES;
 
 /// Decay of a vibration in the time in which its phase passes 1 rad, 1: with less, a resonance would count as what it reaches
@@ -114,9 +115,13 @@ impl Part {
     }
 }
 
-/// The largest factor, at the frequencies of the modes and between them.
+/// The largest factor, at the rates of the modes and between them. That of an overdamped mode is its fast root: a jump of a velocity is
+/// answered as fast, which a contact with a damper feels.
 fn greatest_force(modes: &[Mode], rows: &[Last], blow: &Blow) -> f64 {
-    let rates = modes.iter().map(|mode| mode.omega_squared.sqrt());
+    let rates = modes.iter().map(|mode| {
+        let Roots { fast: [fast], .. } = Roots::of([mode.omega_squared], [mode.damping]);
+        fast
+    });
     let between = rates.clone().zip(rates.clone().skip(1)).map(|(a, b)| (a * b).sqrt());
     let factor = |omega: f64| {
         let s = Complex::new(DECAY * omega, omega);
