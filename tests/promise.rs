@@ -144,6 +144,13 @@ fn none_above_in_silence(judged: &[Judged], count: u64) {
     assert!(100 * number(|judged| judged.outcome == Outcome::NotRun) < 5 * count);
 }
 
+/// The relay of a number with 20 modes, fewer than it needs.
+fn with_too_few_modes(number: u64) -> Relay {
+    let mut relay = kinds::any(number);
+    relay.scene.solver.modes = 20;
+    relay
+}
+
 #[test]
 fn what_grows_beyond_the_tolerance_is_not_silent() {
     for (draw, numbers) in [
@@ -151,7 +158,8 @@ fn what_grows_beyond_the_tolerance_is_not_silent() {
         (kinds::any as Draw, &[10_474, 10_902][..]),
         // Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant: errors of
         // steps, and of the modes left out.
-        (kinds::any, &[10_731, 12_630, 60_085, 200_798]),
+        (kinds::any, &[10_731, 12_630]),
+        (with_too_few_modes, &[60_085, 200_798]),
         // In slip that is unstable errors grow with its vibration, far faster than by blows, and in a contact that never opens, too.
         (kinds::friction, &[40_070, 40_317, 40_330, 40_508]),
     ] {
@@ -225,7 +233,7 @@ fn contacts_that_part_together_part_once() {
 /// nodes of long steps on a spring that rings on; where a contact began and ceased to slip in one step that was long against its damping
 /// time; where the errors of many steps with knots added up; between the few nodes of a step that went on beyond communication points;
 /// where two samples of what a polynomial misses passed through zero at once; a maximum between the few nodes after a knot;
-/// and where a force turned while a fast vibration was at its zero at the nodes.
+/// where a force turned while a fast vibration was at its zero at the nodes; and where the base jerks a spring on a soft contact.
 #[test]
 fn relays_that_once_exceeded_the_tolerance_keep_it() {
     let excesses: [(Draw, &[u64]); 5] = [
@@ -242,7 +250,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
             ],
         ),
         (kinds::with_modes, &[70_009, 70_086, 70_227]),
-        (kinds::rough, &[61_783, 62_289, 62_148]),
+        (kinds::rough, &[61_783, 62_289, 62_148, 62_487]),
     ];
     for (draw, numbers) in excesses {
         for &number in numbers {
