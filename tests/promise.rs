@@ -155,7 +155,7 @@ fn with_too_few_modes(number: u64) -> Relay {
 fn what_grows_beyond_the_tolerance_is_not_silent() {
     for (draw, numbers) in [
         // The force of a pusher jumps, and so excites what no mode resolves.
-        (kinds::any as Draw, &[10_474, 10_902][..]),
+        (with_too_few_modes as Draw, &[10_474, 10_902][..]),
         // Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant: errors of
         // steps, and of the modes left out.
         (kinds::any, &[10_731, 12_630]),
