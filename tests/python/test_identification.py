@@ -151,10 +151,12 @@ def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
         found(data, relay=relay)
 
 
-def asked(tmp_path: Path, measurements: list[Measurement], *parameters: str) -> Identification:
+def asked(
+    tmp_path: Path, measurements: list[Measurement], *parameters: str, guessed: Values = measured.GUESSED
+) -> Identification:
     """Identify the relay of a record from near values: all that they are of, unless parameters are named."""
     relay = tmp_path / "relay.toml"
-    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in measured.GUESSED.items()))
+    relay.write_text("\n".join(f"parameters.{name} = {value!r}" for name, value in guessed.items()))
     paths: list[Path] = []
     for each in measurements:
         paths.append(tmp_path / f"{len(paths)}-{each.path}")
@@ -304,6 +306,36 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     # And the other way around: what is known from elsewhere is not sought.
     relay.write_text(relay.read_text().replace("tip.mass", names[0]).replace(str(measured.TRUTH["tip.mass"]), "1.2e11"))
     assert list(found(ring, relay=relay, parameters=names).missing) == [names[0]]
+
+
+def test_a_search_comes_back_from_a_spring_that_does_not_ring(tmp_path: Path) -> None:
+    sheet: Values = {
+        "beam.length": 14e-3, "beam.width": 6e-3, "beam.thickness": 0.2e-3, "beam.density": 8800.0,
+        "contact.curvatureRadius": 5e-3, "contact.damping": 4e-6,
+    }  # fmt: skip
+    guessed = dict(zip(measured.TRUTH, (0.25e-3, 1.2e11, 30e-6, 4e-6), strict=True))
+    # The damping of the drawing is a guess.
+    true = {name: value * part for (name, value), part in zip(guessed.items(), (1.0, 1.4, 0.65, 2.6), strict=True)}
+    chance, travel, time = np.random.default_rng(2), np.linspace(-0.15e-3, 0.15e-3, 13), np.arange(2e-3, 52e-3, 5e-5)
+    overtravel = true["contact.overtravel"]
+    force = np.array([Reference({**sheet, **true, "contact.overtravel": overtravel + each}).force for each in travel])
+    force += 5e-4 * chance.standard_normal(len(force))
+    motion = measured.deflection({**sheet, **true}, time)
+    motion += 0.004 * np.abs(motion).max() * chance.standard_normal(len(time))
+    data = [
+        Measurement(Path("force.csv"), "static force", travel, "force", "N", force),
+        Measurement(Path("ring.csv"), "ring-down", time, "displacement", "m", motion, is_open=True),
+    ]
+    names = ["contact.overtravel", "beam.youngsModulus", "beam.stiffnessDamping", "contact.damping", "tip.mass"]
+    result = asked(tmp_path, data, *names, guessed={**sheet, **guessed})
+    assert list(result.missing) == ["contact.damping"]
+    assert all(abs(np.log(result[name].value / value)) < 2 * result[name].half for name, value in true.items())
+
+
+def test_a_relay_that_does_not_ring_is_refused(tmp_path: Path) -> None:
+    guessed = {**measured.GUESSED, "beam.stiffnessDamping": 1e-2}
+    with pytest.raises(RelayContactError, match="ring-down: with the parameters of the relay's file nothing rings"):
+        asked(tmp_path, measured.record(0.1, 1e4, 0.001, SEED), guessed=guessed)
 
 
 def test_bounces_tell_the_damping_of_the_contact(tmp_path: Path) -> None:

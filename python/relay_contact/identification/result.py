@@ -188,6 +188,9 @@ def check(each: Set, predicted: Array) -> None:
         words = f"columns {own.quantity}, {other}: {ratio:.3g} times what the relay's file gives (median)"
     elif each.ring:
         frequency, expected = (float(pole[1]) / (2 * np.pi) for pole in (each.ring.pole, predicted))
+        if not expected:
+            text = "with the parameters of the relay's file nothing rings: not allowed, allowed is less damping"
+            raise RelayContactError(f"{own.path}: {own.kind}: {text}")
         length, rate = float(np.ptp(own.over)), 1 / float(np.median(np.diff(own.over)))
         ratio, fewest = frequency / expected, SAMPLED * max(frequency, expected)
         words = f"column time: rings at {frequency:.3g} Hz, by the relay's file at {expected:.3g} Hz"
