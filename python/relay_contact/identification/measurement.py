@@ -181,6 +181,6 @@ def interpreted(table: Table, component: Component, positions: list[str]) -> dic
             except RelayContactError as error:
                 raise table.wrong(str(error), line) from error
         # Anything else with an equals sign is a remark.
-        elif near := difflib.get_close_matches(name, [*own, "calibration"], cutoff=0.75):
+        elif near := difflib.get_close_matches(name.lower(), [*own, "calibration"], cutoff=0.75):
             raise table.wrong(f"{name}: unknown; did you mean {near[0]}?", line)
     return found
