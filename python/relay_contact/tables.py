@@ -89,6 +89,8 @@ class Table:
     """Texts by name, with their lines."""
     remarks: dict[str, tuple[str, int]]
     """The same with a colon in place of the equals sign."""
+    again: dict[str, int] = field(default_factory=dict)
+    """Lines of those that were there before."""
     places: dict[str, int] = field(default_factory=dict)
     """Of the columns in a row, by name."""
     units: dict[str, str] = field(default_factory=dict)
@@ -163,7 +165,10 @@ def read(path: Path, known: Units) -> Table:
         elif number != head and (found := SETTING.match(text.strip(BLANK))) and (found[1] or found[3] == "="):
             # Measuring programs write `name: text` of their own, without #.
             name, sign, value = (part.strip(BLANK) for part in found.groups()[1:])
-            (table.settings if sign == "=" else table.remarks)[name] = value, number
+            kept = table.settings if sign == "=" else table.remarks
+            if name in kept:
+                table.again[name] = number
+            kept[name] = value, number
     if not head:
         raise table.wrong(f"no line with the names of the columns; there may be {', '.join(known)}")
     names = split(lines[head].lstrip(" #"), separator)

@@ -161,6 +161,8 @@ def interpreted(table: Table, component: Component, positions: list[str]) -> dic
         if setting in (*own, "calibration", *component.variables):
             raise table.wrong(f"{name}: {text}: not allowed, allowed is {setting} = {text}", line)
     for name, (text, line) in table.settings.items():
+        if name in table.again and (name in (*own, "calibration") or name in component.variables):
+            raise table.wrong(f"{name} = {text}: there twice: not allowed, allowed is once", table.again[name])
         if name in own:
             if text not in own[name]:
                 raise table.wrong(f"{name} = {text}: not allowed, allowed is {' or '.join(own[name])}", line)
