@@ -160,7 +160,7 @@ def text(path: Path) -> Iterator[Channel]:
     lines = tables.decoded(path).splitlines()[:LOOKED]
     known: dict[str, Mapping[str, float]] = {}
     for line in lines:
-        heads = [tables.parted(cell) for each in tables.SEPARATORS if each in line for cell in line.split(each)]
+        heads = [tables.parted(cell) for each in tables.SEPARATORS if each in line for cell in tables.split(line, each)]
         heads = heads or [tables.parted(line.strip(tables.BLANK))]
         if any(name in TIME for name, _ in heads) or any(unit in ACCELERATIONS for _, unit in heads):
             known |= {name: TIMES if name in TIME else ACCELERATIONS for name, _ in heads if name}

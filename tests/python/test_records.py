@@ -89,6 +89,10 @@ def test_a_record_is_the_same_in_quotes_and_one_wrong_row_is_named(tmp_path: Pat
     (quoted,) = read(path)
     assert np.array_equal(quoted.time, [*plain.time, 50.0])
     assert np.array_equal(quoted.acceleration, [*plain.acceleration, 0.0])
+    for names in ('"time";"a"\n"s";"g"', '"time [s]";"a [g]"'):
+        path.write_text(f"some\n\n{names}\n{rows}\n")
+        (named,) = read(path)
+        assert np.array_equal(named.acceleration, plain.acceleration)
     path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n5;x\n")
     with pytest.raises(RelayContactError, match=r"long.csv:405: column a: x: not allowed, allowed is a number"):
         read(path)
