@@ -27,6 +27,7 @@ RESISTANCE, COUNT = "contact.resistance", "chatter.count"
 HEAD = ("interruptions", "simulated", "measured", "simulated / measured")
 SIMULATED, MEASURED = "simulated", "measured"
 FILES = ("comparison.csv", "comparison.png")
+OVERLAP = 1.01  # times the time to the next start that an interruption may last, as a detector rounds
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,10 @@ def measured(path: Path, threshold: float) -> Interruptions:
     table.ascending(begin)
     if "duration" in there:
         table.refuse("duration", table["duration"] <= 0, "greater than 0")
+        until = np.append(np.diff(table[begin]), np.inf)
+        table.refuse("duration", table["duration"] > OVERLAP * until, "up to the next start; is the unit right?")
         return Interruptions(table[begin], table["duration"], np.zeros(0), np.zeros(0))
+    table.refuse("resistance", table["resistance"] < -threshold, "0 or more; change its sign")
     return interruptions(table[begin], table["resistance"], threshold)
 
 

@@ -107,6 +107,18 @@ def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) 
     log.write_text("start [ms],length [us]\n1,2\n")
     with pytest.raises(RelayContactError, match=r"log.csv:1: columns: not allowed, allowed are start and duration"):
         compare(run, log)
+    for text, message in (
+        # Two at once; microseconds that say they are milliseconds.
+        ("start [ms],duration [us]\n1,400\n1.2,400\n", ":2: column duration: 400 us: not allowed, allowed is up to"),
+        ("start [ms],duration [ms]\n1,400\n2,400\n", ":2: column duration: 400 ms: not allowed, allowed is up to"),
+        # Leads of the meter that are exchanged: it never opens.
+        ("time [ms],resistance [Ohm]\n0,-0.1\n1,-1e6\n2,-0.1\n", ":3: column resistance: -1e6 Ohm: not allowed"),
+    ):
+        log.write_text(text)
+        with pytest.raises(RelayContactError, match=message):
+            compare(run, log)
+    log.write_text("start [ms],duration [us]\n1,1003\n2,400\n")
+    assert len(compare(run, log).measured.start) == 2
     other = tmp_path / "other.csv"
     other.write_text("time,contact.force\n0,1\n1,1\n")
     with pytest.raises(RelayContactError, match=r"no columns time and contact.resistance: run it with --output"):
