@@ -111,7 +111,7 @@ def test_the_frequency_of_a_rough_contact_is_that_of_the_exact_beam() -> None:
 def test_frequencies_over_the_overtravel_tell_the_law_of_a_rough_contact(tmp_path: Path) -> None:
     (record_,) = measured.rough_frequency_record(SEED)
     data, relay = rough_files(tmp_path, record_.values)
-    result = found(data, relay=relay, parameters=list(measured.ROUGH), out=tmp_path / "found")
+    result = found(data, relay=relay, parameters=list(measured.ROUGH), out=str(tmp_path / "found"))
     assert not result.missing
     written = Relay.read(tmp_path / "found/relay.toml", COMPONENT)
     (values,) = written.positions.values()

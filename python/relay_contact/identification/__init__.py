@@ -18,7 +18,7 @@ def identify(
     relay: str | Path,
     data: list[str | Path],
     *,
-    out: Path | None = None,
+    out: str | Path | None = None,
     parameters: list[str] | None = None,
     component: Component | None = None,
     progress: bool = False,
@@ -53,5 +53,5 @@ def identify(
         fit, missing = sought(Laboratory(component, bar.update), described, measurements, asked)
         result = conclude(fit, missing, described, path)
     if out:
-        write(out, result, component)
+        write(Path(out), result, component)
     return result
