@@ -512,3 +512,27 @@ def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.C
     assert "none: no test named so; there are 201A, 204 A" in capsys.readouterr().err
     assert main(["qualify", "paper", "--history", "record.csv", "--test", "204"]) == 1
     assert "tests 204: not allowed without a standard" in capsys.readouterr().err
+
+
+def test_a_slope_begins_at_a_density_with_or_without_a_decimal_point(tmp_path: Path) -> None:
+    path = tmp_path / "slope.toml"
+    text = """[contacts]
+opening = 10e-6
+false_make = 1e-6
+voltage = 6.0
+current = 10e-3
+clause = ""
+evidence = "measured"
+[[random]]
+name = "noise"
+density = [[20, "6 dB/octave"], [40, 1], [80, 1.0], [160, "-6 dB/octave"]]
+rms = 9.8
+duration = 60
+clause = ""
+evidence = "measured"
+"""
+    path.write_text(text)
+    (test,) = Standard.read(path).tests
+    assert isinstance(test, Random)
+    (_, first), *_, (_, last) = test.density
+    assert (first, last) == pytest.approx((10**-0.6, 10**-0.6))

@@ -77,7 +77,7 @@ def sloped(points: Any) -> Any:  # noqa: ANN401
             frequency, level = known[at]
             beside, other = known[at - 1 if at == len(known) - 1 else at + 1]
             slope = SLOPE.fullmatch(level) if isinstance(level, str) else None
-            if slope and isinstance(other, float):
+            if slope and type(other) in (int, float):
                 known[at][1] = float(other * 10 ** (float(slope[1]) * math.log2(frequency / beside) / 10))
     except (TypeError, ValueError, ArithmeticError):
         return points
