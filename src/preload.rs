@@ -270,12 +270,15 @@ impl<'a> Pressed<'a> {
         })
     }
 
-    /// Refuses friction under which the spring gives way more than it presses back, at an axial force (N).
+    /// Refuses friction under which the spring gives way more than it presses back, at an axial force (N), and a spring that has
+    /// buckled under that.
     fn check_jam(&self, n: f64) -> Result<(), SceneError> {
         let compliance = self.compliance(n);
         if self.share.is_none() || compliance.min(compliance + self.give) > 0.0 {
             return Ok(());
         }
+        // A buckled spring gives way too, at any friction.
+        self.check_buckling(n)?;
         let Scene { friction, tip, .. } = self.scene;
         // Both compliances fall linearly with the product of coefficient and height.
         let statics = &self.springs.moving.statics;
