@@ -454,9 +454,10 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
 
 
 def ends(drawn: Drawn, factor: float, kept: float) -> tuple[float, float]:
-    """Return the ends of the interval of a margin; what the component found is within.
+    """Return the ends of the interval of a margin, as far out as its draws may be wrong.
 
-    `kept` is the part of a vibration that a record has at least: with all of it less of its level may fail.
+    What the component found is within. `kept` is the part of a vibration that a record has at least: with all of it
+    less of its level may fail.
     """
     low, high = np.quantile(drawn.margins, LIMITS, method="hazen").tolist()
-    return kept * min(low, factor), max(high, factor)
+    return kept * min(low * (1 - drawn.error), factor), max(high * (1 + drawn.error), factor)
