@@ -10,7 +10,7 @@
 //! `p` over the root of its mass as coordinate, it joins those of the springs.
 
 use crate::beam::mode::Mode;
-use crate::contact::power::Power;
+use crate::contact::law::Law;
 use crate::magnet::{Magnet, damping_ratio};
 use crate::math::roots;
 use crate::scene::{self, Scene};
@@ -64,10 +64,10 @@ impl Armature {
         }
     }
 
-    pub fn stop(&self) -> Power {
+    pub fn stop(&self) -> Law {
         let given = &self.given;
         let critical = 2.0 * (given.stop_stiffness * given.mass).sqrt();
-        Power::linear(given.stop_stiffness, critical * damping_ratio(given.stop_restitution))
+        Law::linear(given.stop_stiffness, critical * damping_ratio(given.stop_restitution))
     }
 
     /// Where it rests with this current of the coil (relative), and with the force of the pusher at a place (m); `None` where

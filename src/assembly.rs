@@ -7,7 +7,6 @@ use crate::beam::mode::Mode;
 use crate::chatter::Criterion;
 use crate::contact::friction::{self, Friction};
 use crate::contact::law::Law;
-use crate::contact::power::Power;
 use crate::electrical::ElectricalContact;
 use crate::link::{Link, LinkLaw, Port};
 use crate::preload::Preload;
@@ -48,7 +47,7 @@ impl Assembly {
         all.contacts((scene, modes, preload), laws);
         if scene.pushed_at().is_some() {
             let port = all.port(Port::new(modes, |mode| mode.pusher));
-            let law = Law::Power(Power::linear(scene.pusher.stiffness, scene.pusher.damping));
+            let law = Law::linear(scene.pusher.stiffness, scene.pusher.damping);
             // On the side away from the fixed contact: where the spring rises, it comes closer.
             all.roles.pusher = Some(all.link(Link {
                 sense: -1.0,
@@ -125,7 +124,7 @@ impl Assembly {
     fn armature(&mut self, armature: &Armature, modes: &[Mode], preload: &Preload) {
         let port = self.port(Port::new(modes, |mode| mode.armature));
         let at = preload.armature;
-        let stop = LinkLaw::Contact(Law::Power(armature.stop()));
+        let stop = LinkLaw::Contact(armature.stop());
         self.roles.core = Some(self.link(Link {
             sense: -1.0,
             force: at.core_force,

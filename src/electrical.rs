@@ -8,8 +8,7 @@
 
 use std::f64::consts::PI;
 
-use crate::contact::law::Law;
-use crate::contact::power::reduced_modulus;
+use crate::contact::law::{Law, reduced_modulus};
 use crate::scene::Scene;
 use crate::variables::ResistanceKind;
 

@@ -7,9 +7,7 @@ use crate::beam::mode_count::Blow;
 use crate::beam::spring::Basis;
 use crate::beam::springs::{Counts, Springs};
 use crate::closed_loop::system::ClosedLoop;
-use crate::contact::law::Law;
-use crate::contact::linear::Linear;
-use crate::contact::power::Power;
+use crate::contact::law::{Law, Opening};
 use crate::error::SceneError;
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
@@ -40,18 +38,15 @@ impl Model {
         scene.check_combinations()?;
         let springs = Springs::new(scene);
         let (spring, section) = (&springs.moving, springs.moving.section);
-        let power = Power::of(scene);
-        let (parallel, second) = (Power::of_parallel(scene), Power::of_second(scene));
+        let power = Law::of(scene);
+        let (parallel, second) = (Law::of_parallel(scene), Law::of_second(scene));
         let preload = Preload::new(scene, &springs, (&power, parallel.as_ref()), initial)?;
         let tolerance = scene.solver.effective_tolerance();
         let bending_force = bending_force(scene, &springs);
         let force_scale = preload.force.max(bending_force);
-        let other = |power: Power| Law::Power(power).parting(tolerance, force_scale);
-        let laws = Laws {
-            contact: law(scene, power, &preload)?.parting(tolerance, force_scale),
-            parallel: parallel.map(other),
-            second: second.map(other),
-        };
+        let parting = |law: Law| law.parting(tolerance, force_scale);
+        let contact = parting(law(scene, power, &preload)?);
+        let laws = Laws { contact, parallel: parallel.map(parting), second: second.map(parting) };
         let own = blow(scene, bending_force, &power);
         let counts = counts(scene, &springs, (&own, [parallel, second], bending_force));
         let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {
@@ -71,12 +66,9 @@ impl Model {
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
             .or_else(|| frequency((scene, &springs, &preload), laws, initial.coil));
         let generator = Generator::new(scene);
-        let closed_loop = match laws.contact {
-            Law::Linear(contact) if generator.is_harmonic() && is_linear(scene, &modes) => {
-                ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new)
-            }
-            _ => None,
-        };
+        let is_linear = contact.opening != Opening::Parting && generator.is_harmonic() && is_linear(scene, &modes);
+        let closed_loop = || ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new);
+        let closed_loop = is_linear.then(closed_loop).flatten();
         let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
         let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
         // Out of line, since it is large on the stack.
@@ -117,17 +109,18 @@ impl Model {
     }
 }
 
-fn law(scene: &Scene, power: Power, preload: &Preload) -> Result<Law, SceneError> {
-    match scene.effects.contact_law {
-        ContactLawKind::Hertz | ContactLawKind::Rough => Ok(Law::Power(power)),
-        ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => Err(SceneError::NoPreload),
-        kind @ (ContactLawKind::Linearised | ContactLawKind::Bonded) => Ok(Law::Linear(Linear {
-            stiffness: preload.contact_stiffness,
-            damping: power.damping,
-            offset: preload.indentation - preload.force / preload.contact_stiffness,
-            bonded: kind == ContactLawKind::Bonded,
-        })),
-    }
+/// The law of the contact, linearised about the preload where the scene has it so.
+fn law(scene: &Scene, power: Law, preload: &Preload) -> Result<Law, SceneError> {
+    let opening = match scene.effects.contact_law {
+        ContactLawKind::Hertz | ContactLawKind::Rough => return Ok(power),
+        ContactLawKind::Linearised | ContactLawKind::Bonded if preload.force <= 0.0 => {
+            return Err(SceneError::NoPreload);
+        }
+        ContactLawKind::Linearised => Opening::Tension,
+        ContactLawKind::Bonded => Opening::Never,
+    };
+    let offset = preload.indentation - preload.force / preload.contact_stiffness;
+    Ok(Law { offset, opening, ..Law::power(preload.contact_stiffness, 1.0, power.damping) })
 }
 
 /// Lowest angular frequency about the preload with every closed link as a spring, rad/s: of one spring with one contact exact.
@@ -145,17 +138,17 @@ fn frequency((scene, springs, preload): (&Scene, &Springs, &Preload), laws: Laws
 fn counts(
     scene: &Scene,
     springs: &Springs,
-    (own, [parallel, second], bending_force): (&Blow, [Option<Power>; 2], f64),
+    (own, [parallel, second], bending_force): (&Blow, [Option<Law>; 2], f64),
 ) -> Counts {
-    let pusher = scene.pushed_at().map(|_| Power::linear(scene.pusher.stiffness, scene.pusher.damping));
-    let blow = |power: Power| blow(scene, bending_force, &power);
+    let pusher = scene.pushed_at().map(|_| Law::linear(scene.pusher.stiffness, scene.pusher.damping));
+    let blow = |power: Law| blow(scene, bending_force, &power);
     let others = [parallel, second, pusher].map(|power| power.map_or(*own, blow));
     let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
     springs.counts(own, &others, scene.solver.effective_tolerance(), asked)
 }
 
 /// A blow as the scene may have it.
-fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
+fn blow(scene: &Scene, bending_force: f64, power: &Law) -> Blow {
     // A blow fifty times the force of the bent spring; with Hertz the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force,
@@ -164,7 +157,7 @@ fn blow(scene: &Scene, bending_force: f64, power: &Power) -> Blow {
     Blow {
         mass_damping: scene.beam.mass_damping,
         stiffness_damping: scene.beam.stiffness_damping,
-        contact_stiffness: power.tangent_stiffness(power.indentation(force)),
+        contact_stiffness: power.tangent_stiffness(force),
         contact_damping: power.damping,
         steep: scene.rubs() || power.exponent < 1.4,
     }

@@ -34,7 +34,7 @@ pub struct Response {
 /// It is infinite or not a number at a resonance without damping.
 pub fn response(model: &Model, omega: f64) -> Response {
     let stiffness = model.preload.contact_stiffness;
-    let contact = Complex::new(stiffness, omega * model.law.damping() * stiffness);
+    let contact = Complex::new(stiffness, omega * model.law.damping * stiffness);
     let zero = Complex::new(0.0, 0.0);
     // Displacement of the tip per force on it, and per base acceleration.
     let (compliance, shaken) = model.modes.iter().fold((zero, zero), |(compliance, shaken), mode| {

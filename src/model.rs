@@ -108,11 +108,11 @@ impl Model {
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
         self.slowest = Slowest::of(&self.modes, &ports);
         (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
-        if let (Some((_, friction)), Some(law)) = (self.friction(), self.law.power()) {
+        if let Some((_, friction)) = self.friction() {
             // Of a contact open at rest the force scale.
             let at_rest = self.preload.force;
             let usual = if at_rest > 0.0 { at_rest } else { self.force_scale };
-            self.unstable_slip = slip_stability::unstable(&self.modes, friction, law, usual);
+            self.unstable_slip = slip_stability::unstable(&self.modes, friction, &self.law, usual);
         }
     }
 

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 use crate::armature::AtRest;
 use crate::beam::springs::{Beside, Springs};
 use crate::contact::friction::tangential_share;
-use crate::contact::power::Power;
+use crate::contact::law::Law;
 use crate::error::SceneError;
 use crate::link::{INPUTS, Ways};
 use crate::math::roots;
@@ -85,7 +85,7 @@ impl Preload {
     pub fn new(
         scene: &Scene,
         springs: &Springs,
-        laws: (&Power, Option<&Power>),
+        laws: (&Law, Option<&Law>),
         initial: &Initial,
     ) -> Result<Self, SceneError> {
         let Some(armature) = &springs.armature else {
@@ -110,8 +110,8 @@ impl Preload {
 struct Pressed<'a> {
     scene: &'a Scene,
     springs: &'a Springs,
-    law: &'a Power,
-    parallel: Option<&'a Power>,
+    law: &'a Law,
+    parallel: Option<&'a Law>,
     /// Where the pusher would touch the unloaded spring, towards the contact, m.
     pushed: Option<f64>,
     /// Friction force per contact force, 1.
@@ -128,7 +128,7 @@ impl<'a> Pressed<'a> {
     fn new(
         scene: &'a Scene,
         springs: &'a Springs,
-        (law, parallel): (&'a Power, Option<&'a Power>),
+        (law, parallel): (&'a Law, Option<&'a Law>),
         [support, _, pushed]: Ways,
     ) -> Self {
         let fixed = springs.fixed.as_ref();
@@ -265,7 +265,7 @@ impl<'a> Pressed<'a> {
         self.check_buckling(axial_force)?;
         Ok(Preload {
             indentation,
-            contact_stiffness: law.tangent_stiffness(indentation),
+            contact_stiffness: law.stiffness(indentation),
             ..rests(force, deflection, axial_force)
         })
     }

@@ -1,7 +1,7 @@
 //! What follows from the motion of the modes: the links of a state.
 
 use crate::contact::friction::{Friction, Phase, Slip};
-use crate::contact::power::Power;
+use crate::contact::law::Law;
 use crate::link::{CONTACT, LinkLaw};
 use crate::math::simd::Separate;
 use crate::model::Model;
@@ -31,11 +31,11 @@ impl Model {
     fn rubbing<'a>(
         &self,
         state: &'a mut State,
-    ) -> Option<(&Friction, &Power, LinkState, &'a mut LinkState, &'a mut Slip)> {
+    ) -> Option<(&Friction, &Law, LinkState, &'a mut LinkState, &'a mut Slip)> {
         let (index, friction) = self.friction()?;
         let contact = *state.links.get(CONTACT)?;
         let along = state.links.get_mut(index)?;
-        Some((friction, self.law.power()?, contact, along, &mut state.slip))
+        Some((friction, &self.law, contact, along, &mut state.slip))
     }
 
     /// Sets friction force and phase as they follow from the motion: after a jump, a closing, or in another phase than

@@ -28,7 +28,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::beam::mode::Mode;
 use crate::contact::friction::{Friction, Phase};
-use crate::contact::power::Power;
+use crate::contact::law::Law;
 use crate::error::Remark;
 use crate::scene::Scene;
 use crate::shared::{Found, Home, Shared};
@@ -83,12 +83,12 @@ impl Unstable {
 }
 
 /// What was found, by modes, friction, law and usual force (N).
-pub(crate) type Known = Found<(Vec<Mode>, Friction, Power, f64), Vec<Unstable>>;
+pub(crate) type Known = Found<(Vec<Mode>, Friction, Law, f64), Vec<Unstable>>;
 
 pub(crate) static KNOWN: Home<Known> = Home::new(None);
 
 /// Unstable slip, in each direction in which it is, about the usual contact force (N).
-pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Power, usual: f64) -> Vec<Unstable> {
+pub(crate) fn unstable(modes: &[Mode], friction: &Friction, law: &Law, usual: f64) -> Vec<Unstable> {
     let of = (modes.to_vec(), *friction, *law, usual);
     Shared::of(&KNOWN).of(of, |(modes, friction, law, usual)| {
         let usual = *usual;
@@ -145,14 +145,9 @@ fn add(sum: &mut Range, range: Range) {
 
 impl<'a> Loop<'a> {
     /// Up to the greatest of the forces looked at about the usual one (N).
-    fn of(modes: &'a [Mode], loads: &'a DVector<f64>, law: &Power, usual: f64) -> Self {
+    fn of(modes: &'a [Mode], loads: &'a DVector<f64>, law: &Law, usual: f64) -> Self {
         let [.., most] = FORCES;
-        Self {
-            modes,
-            loads,
-            contact_damping: law.damping,
-            stiffest: law.tangent_stiffness(law.indentation(most * usual)),
-        }
+        Self { modes, loads, contact_damping: law.damping, stiffest: law.tangent_stiffness(most * usual) }
     }
 
     /// Whether it is stable at all stiffnesses up to the greatest. `false` also where that does not show, as with a mode without
@@ -222,9 +217,9 @@ impl<'a> Loop<'a> {
 }
 
 /// The eigenvalue (1/s) with which a motion grows fastest at a contact force (N), if one grows.
-fn fastest(modes: &[Mode], loads: &DVector<f64>, law: &Power, force: f64) -> Option<Complex<f64>> {
+fn fastest(modes: &[Mode], loads: &DVector<f64>, law: &Law, force: f64) -> Option<Complex<f64>> {
     let count = modes.len();
-    let stiffness = law.tangent_stiffness(law.indentation(force));
+    let stiffness = law.tangent_stiffness(force);
     let per_mode = |value: fn(&Mode) -> f64| DVector::from_iterator(count, modes.iter().map(value));
     let (omega, tip) = (per_mode(|mode| mode.omega_squared.sqrt()), per_mode(|mode| mode.tip));
     // Of omega_i q_i and q_i', whose squares are energies.
@@ -250,7 +245,7 @@ fn fastest(modes: &[Mode], loads: &DVector<f64>, law: &Power, force: f64) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::power::HERTZ;
+    use crate::contact::law::HERTZ;
     use crate::excitation::random::SplitMix64;
 
     #[test]
@@ -278,13 +273,7 @@ mod tests {
                 modes.iter().map(|mode| mode.tip * (random() - 0.6 * against) + 4.0 * against * (random() - 0.5));
             let loads = DVector::from_vec(loads.collect::<Vec<f64>>());
             let damping = if case % 3 == 0 { 0.0 } else { 10_f64.powf(-8.0 + 4.0 * random()) };
-            let law = Power {
-                coefficient: 10_f64.powf(8.0 + 3.0 * random()),
-                exponent: HERTZ,
-                damping,
-                traces: 0.0,
-                least: 0.0,
-            };
+            let law = Law::power(10_f64.powf(8.0 + 3.0 * random()), HERTZ, damping);
             let grows = |force: &f64| fastest(&modes, &loads, &law, force * 0.2).is_some();
             let grows = FORCES.iter().any(grows);
             let is_stable = Loop::of(&modes, &loads, &law, 0.2).is_stable();

@@ -1,13 +1,11 @@
 //! The contact laws: force, stiffness, energy and divided differences of powers of the indentation.
 
-use relay_contact::reference::{Branch, Power, gauss, reduced_modulus};
+use relay_contact::reference::{Branch, Law, gauss, reduced_modulus};
 use relay_contact::scene::Scene;
 
 #[test]
 fn an_open_contact_has_no_force_however_fast_it_moves() {
-    for law in
-        [Power::hertz(&Scene::default().contact), Power::rough(&Scene::default().contact), Power::linear(1e5, 1.0)]
-    {
+    for law in [Law::hertz(&Scene::default().contact), Law::rough(&Scene::default().contact), Law::linear(1e5, 1.0)] {
         for (d, rate) in [(0.0, -1e20), (-1e-9, 1e20), (-1.0, 0.0)] {
             assert_eq!(law.closed_branch(d, rate), Branch::default(), "{law:?} {d} {rate}");
         }
@@ -15,12 +13,12 @@ fn an_open_contact_has_no_force_however_fast_it_moves() {
 }
 
 /// Laws of several exponents through the same point: 1e5 N/m at 0.1 N.
-fn laws() -> impl Iterator<Item = (f64, Power)> {
+fn laws() -> impl Iterator<Item = (f64, Law)> {
     [0.0, 0.1, 1.0 / 3.0, 0.54, 0.75, 0.9].into_iter().map(|n| {
         let mut contact = Scene::default().contact;
         (contact.stiffness, contact.stiffness_force) = (1e5, 0.1);
         contact.stiffness_exponent = n;
-        (n, Power::rough(&contact))
+        (n, Law::rough(&contact))
     })
 }
 
@@ -34,11 +32,11 @@ fn the_stiffness_is_the_given_power_of_the_force() {
         for force in [1e-6, 0.1, 3.0] {
             let d = law.indentation(force);
             close(law.elastic_force(d), force, 1e-13);
-            close(law.tangent_stiffness(d), 1e5 * (force / 0.1_f64).powf(n), 1e-13);
+            close(law.stiffness(d), 1e5 * (force / 0.1_f64).powf(n), 1e-13);
             let (factor, exponent) = law.stiffness_by_force();
-            close(factor * force.powf(exponent), law.tangent_stiffness(d), 1e-13);
+            close(factor * force.powf(exponent), law.stiffness(d), 1e-13);
             // Indentation by the integral of dF / k: F / ((1 - n) k).
-            close(d, force / ((1.0 - n) * law.tangent_stiffness(d)), 1e-13);
+            close(d, force / ((1.0 - n) * law.stiffness(d)), 1e-13);
         }
     }
 }
@@ -46,19 +44,19 @@ fn the_stiffness_is_the_given_power_of_the_force() {
 #[test]
 fn a_third_is_hertz() {
     let contact = Scene::default().contact;
-    let hertz = Power::hertz(&contact);
+    let hertz = Law::hertz(&contact);
     let mut rough = contact;
     rough.stiffness_exponent = 1.0 / 3.0;
     // k_r = (6 E*^2 R F_r)^(1/3).
     let modulus = reduced_modulus(&contact);
     rough.stiffness = (6.0 * modulus * modulus * contact.curvature_radius * contact.stiffness_force).cbrt();
-    let rough = Power::rough(&rough);
+    let rough = Law::rough(&rough);
     close(rough.coefficient, hertz.coefficient, 1e-14);
     assert_eq!(rough.exponent, 1.5);
     // The general formulas beside those in square roots.
-    let general = Power { exponent: 1.5 + 1e-15, ..hertz };
+    let general = Law { exponent: 1.5 + 1e-15, ..hertz };
     for (a, b) in [(-1e-8, 5e-8), (0.0, 5e-8), (1e-8, 5e-8), (5e-8, 5.000_000_1e-8), (4e-8, 4e-8)] {
-        close(general.mean_force(a, b), hertz.mean_force(a, b), 1e-13);
+        close(general.mean_elastic_force(a, b), hertz.mean_elastic_force(a, b), 1e-13);
         close(general.mean_stiffness(a, b), hertz.mean_stiffness(a, b), 1e-13);
         close(general.energy_above_tangent(a, b - a), hertz.energy_above_tangent(a, b - a), 1e-13);
         close(general.energy_above_tangent(b, a - b), hertz.energy_above_tangent(b, a - b), 1e-13);
@@ -84,14 +82,14 @@ fn energy_and_divided_differences_are_integrals_of_the_force() {
             };
             let tolerance = if a <= 0.0 || b <= 0.0 { 1e-4 } else { 1e-12 };
             let force = |d: f64| law.elastic_force(d);
-            close(law.mean_force(a, b), closed(&force) / (b - a), tolerance);
+            close(law.mean_elastic_force(a, b), closed(&force) / (b - a), tolerance);
             close(law.mean_stiffness(a, b), (force(b) - force(a)) / (b - a), 1e-12);
             let above = closed(&force) - force(a) * (b - a);
             close(law.energy_above_tangent(a, b - a), above, tolerance.max(1e-11));
         }
         // Small deviations: k r^2 / 2.
         let deviation = 1e-7 * d0;
-        let parabola = 0.5 * law.tangent_stiffness(d0) * deviation * deviation;
+        let parabola = 0.5 * law.stiffness(d0) * deviation * deviation;
         close(law.energy_above_tangent(d0, deviation), parabola, 1e-5);
     }
 }

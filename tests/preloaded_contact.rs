@@ -13,10 +13,10 @@
 use std::f64::consts::TAU;
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Generator, Mode, Preload};
+use relay_contact::reference::{Generator, Law, Mode, Preload};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
-use testing::rig::{Rig, compose, power};
+use testing::rig::{Rig, compose};
 use testing::scenes::{accelerated, shaken};
 
 /// Preload of the specimen (N), its stiffness there (N/m) and a mass of the order of its rivet (kg).
@@ -49,7 +49,7 @@ fn rig(exponent: f64, ratios: [f64; 2], [frequency, level, phase]: [f64; 3]) -> 
         ..Mode::default()
     };
     let coefficient = FORCE * (exponent * length).powf(-exponent);
-    let law = power(coefficient, exponent, 2.0 * ratios[1] * time);
+    let law = Law::power(coefficient, exponent, 2.0 * ratios[1] * time);
     Rig::new(compose(&[mode], law, 0.0, TOLERANCE, FORCE).with(|model| {
         model.preload = Preload {
             force: FORCE,

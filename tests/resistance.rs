@@ -1,6 +1,6 @@
 //! Resistance and temperature of a contact against published values and closed forms.
 
-use relay_contact::reference::{ElectricalContact, Law, Power, reduced_modulus};
+use relay_contact::reference::{ElectricalContact, Law, reduced_modulus};
 use relay_contact::scene::Scene;
 use relay_contact::variables::{ContactLawKind, ResistanceKind};
 use testing::close;
@@ -13,10 +13,10 @@ fn scene(kind: ResistanceKind) -> Scene {
 
 fn of(scene: &Scene) -> Option<ElectricalContact> {
     let law = match scene.effects.contact_law {
-        ContactLawKind::Rough => Power::rough(&scene.contact),
-        _ => Power::hertz(&scene.contact),
+        ContactLawKind::Rough => Law::rough(&scene.contact),
+        _ => Law::hertz(&scene.contact),
     };
-    ElectricalContact::new(scene, &Law::Power(law))
+    ElectricalContact::new(scene, &law)
 }
 
 #[test]

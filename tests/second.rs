@@ -2,7 +2,7 @@
 //! move, its false makes and the smallest gap are compared with another solution in `tests/python/test_second_contact.py`.
 
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Law, Model};
+use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{AxialForceKind, BooleanOutput, ExcitationKind, IntegerOutput, RealOutput};
@@ -133,9 +133,8 @@ fn a_far_second_contact_changes_nothing() {
 
 /// Coefficients of both contacts, which have the root of their radius, N/m^1.5.
 fn coefficients(scene: &Scene, model: &Model) -> [f64; 2] {
-    let Law::Power(hertz) = &model.law else { panic!() };
     let second = (scene.second.curvature_radius / scene.contact.curvature_radius).sqrt();
-    [hertz.coefficient, hertz.coefficient * second]
+    [model.law.coefficient, model.law.coefficient * second]
 }
 
 /// A free mass flies to and fro between two undamped Hertz stops of different radius. Each impact lasts 2.9432751843 times

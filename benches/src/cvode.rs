@@ -7,7 +7,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use relay_contact::reference::Law;
+use relay_contact::reference::Opening;
 
 use crate::integrator::{BUDGET, Failure, Integrator, Run, SHORT};
 use crate::problem::Problem;
@@ -86,8 +86,11 @@ fn question(problem: &Problem, tolerance: f64) -> Result<String, Failure> {
     for mode in &model.modes {
         line(&[mode.omega_squared, mode.damping, mode.tip, mode.participation]);
     }
-    let Law::Power(power) = &model.law else { return Err(Failure::Stopped("a linear contact".to_owned())) };
-    line(&[power.coefficient, power.damping, power.exponent]);
+    let law = &model.law;
+    if law.opening != Opening::Parting {
+        return Err(Failure::Stopped("a linear contact".to_owned()));
+    }
+    line(&[law.coefficient, law.damping, law.exponent]);
     let (amplitude, omega, phase) = problem.sine();
     line(&[model.preload.force, model.preload.indentation]);
     line(&[amplitude, omega, phase, problem.support_rate]);

@@ -164,7 +164,7 @@ impl Problem {
     pub fn absolute(&self, tolerance: f64) -> Vec<f64> {
         let stiffness = self.model.law.tangent_stiffness(self.model.force_scale);
         let displacement = self.model.force_scale / stiffness;
-        let velocity = displacement / self.model.law.damping();
+        let velocity = displacement / self.model.law.damping;
         let of = |scale: f64| self.model.modes.iter().map(move |mode| tolerance * (scale / mode.tip.abs()));
         of(displacement).chain(of(velocity)).collect()
     }

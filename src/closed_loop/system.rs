@@ -17,7 +17,7 @@ use crate::closed_loop::eigenvectors::EigenPair;
 use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
 use crate::closed_loop::problem::Problem;
 use crate::closed_loop::propagator::Propagator;
-use crate::contact::linear::Linear;
+use crate::contact::law::Law;
 use crate::excitation::generator::Generator;
 use crate::math::free_motion::FreeMotion;
 use crate::math::simd::{Arithmetic, Simd, compiled_for};
@@ -30,7 +30,7 @@ const ROUNDING: f64 = 1e-10;
 /// Beam and linear contact as uncoupled oscillators.
 #[derive(Clone, Debug)]
 pub struct ClosedLoop {
-    pub(crate) contact: Linear,
+    pub(crate) contact: Law,
     pub(crate) oscillators: Vec<Oscillator>,
     /// Transformation from oscillators (displacement, then velocity of each) to modes.
     pub(crate) to_modes: Columns,
@@ -92,14 +92,14 @@ impl ClosedLoop {
     pub fn new(
         scene: &Scene,
         (modes, resolution): (&[Mode], &Resolution),
-        contact: Linear,
+        contact: Law,
         generator: &Generator,
     ) -> Option<Self> {
         let problem = Problem {
             modes: modes.iter().map(|mode| (mode.omega_squared, mode.tip)).collect(),
             mass_damping: scene.beam.mass_damping,
             stiffness_damping: scene.beam.stiffness_damping,
-            contact_stiffness: contact.stiffness,
+            contact_stiffness: contact.coefficient,
             contact_damping: contact.damping,
         };
         let pairs = problem.solve()?;
@@ -209,7 +209,7 @@ impl ClosedLoop {
             let mut motions = again.iter().zip(&motion).zip(&scales);
             motions.all(|((again, motion), scale)| ((again - motion) * scale).abs() < ROUNDING)
         });
-        let Linear { stiffness, damping, .. } = self.contact;
+        let Law { coefficient: stiffness, damping, .. } = self.contact;
         // Error of the contact force of a modal motion, and the magnitude of its terms.
         let residual = |motion: &[f64], expected: f64| {
             modes.iter().zip(motion.chunks_exact(2)).fold(

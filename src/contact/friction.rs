@@ -38,7 +38,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::beam::mode::Mode;
-use crate::contact::power::{Power, compliance};
+use crate::contact::law::{Law, compliance};
 use crate::scene::{Contact, Material, Scene};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,22 +141,22 @@ impl Friction {
     /// Trial force of stick at the indentation `d` (m), where the tangential spring is deflected by `z` (m) and goes on at
     /// `rate` (m/s).
     #[inline(always)]
-    pub(crate) fn trial(&self, law: &Power, d: f64, z: f64, rate: f64) -> Stick {
-        let stiffness = self.ratio * law.tangent_stiffness(d);
+    pub(crate) fn trial(&self, law: &Law, d: f64, z: f64, rate: f64) -> Stick {
+        let stiffness = self.ratio * law.stiffness(d);
         let force = -stiffness * (z + law.damping * rate);
         Stick { force, by_indentation: if d > 0.0 { (law.exponent - 1.0) * force / d } else { 0.0 }, stiffness }
     }
 
     /// Deflection to which the tangential spring of a slipping contact tends, m: -T / k_t.
     #[inline(always)]
-    pub(crate) fn limit_deflection(&self, law: &Power, sign: f64, d: f64, rate: f64) -> f64 {
+    pub(crate) fn limit_deflection(&self, law: &Law, sign: f64, d: f64, rate: f64) -> f64 {
         -sign * self.coefficient / self.ratio * (1.0 / law.exponent * d + law.damping * rate)
     }
 
     /// Slip velocity times the damping time of the contact, m, positive against the slip under a friction force of this sign:
     /// as the tangential spring, deflected by `z` (m), tends to its limit, the contact point moving at `along` (m/s), at the
     /// indentation `d` (m) that grows at `rate` (m/s).
-    pub(crate) fn turned(&self, law: &Power, sign: f64, (d, rate): (f64, f64), (z, along): (f64, f64)) -> f64 {
+    pub(crate) fn turned(&self, law: &Law, sign: f64, (d, rate): (f64, f64), (z, along): (f64, f64)) -> f64 {
         sign * (z + law.damping * along - self.limit_deflection(law, sign, d, rate))
     }
 }

@@ -2,8 +2,6 @@
 
 pub mod friction;
 pub mod law;
-pub mod linear;
-pub mod power;
 
 use crate::math::nodal::Nodal;
 

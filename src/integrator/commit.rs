@@ -100,7 +100,7 @@ fn follow_slip<const S: usize>(
     let (index, _) = model.friction()?;
     let (link, nodes) = model.links.get(index).zip(trial.links.get(index))?;
     let mut slips = nodes.approaches;
-    let damping = model.law.damping();
+    let damping = model.law.damping;
     let left = collocation.nodes.map(|x| trial.slip.left(x * length, damping));
     for (slip, (deflection, left)) in slips.iter_mut().zip(trial.slip.deflections.iter().zip(&left)) {
         *slip = -*slip - deflection - left;

@@ -8,7 +8,6 @@ use crate::closed_loop::oscillator::Coordinates;
 use crate::closed_loop::propagator::Propagator;
 use crate::closed_loop::system::{ClosedLoop, Steady};
 use crate::contact::law::Law;
-use crate::contact::linear::Linear;
 use crate::excitation::drive::Drive;
 use crate::integrator::constants::{FORCE_ROUNDING, MANY_STEPS, STEP_GROWTH, UNREST};
 use crate::integrator::dense_output::{DenseLink, DenseOutput};
@@ -123,7 +122,7 @@ pub(crate) fn step_ahead(
         let Some(propagator) = propagator else { return false };
         let [indentations, rates] = start.at_nodes(state, propagator.tip_at_nodes(model.simd, &free, start.phasor));
         let defect = |start: f64, values: &Nodal<LONG>| start - dot::<LONG, Separate>(values, &collocation.at_start);
-        let stiffness = start.law.stiffness;
+        let stiffness = start.law.coefficient;
         let contact = state.links[CONTACT];
         let elastic = stiffness * defect(contact.approach, &indentations);
         let force = elastic + stiffness * start.law.damping * defect(contact.rate, &rates);
@@ -155,7 +154,7 @@ pub(crate) fn step_ahead(
 /// What an exact step begins with.
 struct Start<'a> {
     closed_loop: &'a ClosedLoop,
-    law: Linear,
+    law: Law,
     /// Loads at the start.
     steady: Steady,
     /// Sine and cosine of the generator's phase at the start, times its amplitude.
@@ -167,23 +166,23 @@ impl<'a> Start<'a> {
     /// `None` if the motion in it is not linear, as the contact may open or be interrupted.
     fn new(model: &'a Model, state: &State, drive: &Drive, length: f64, free: &mut Coordinates) -> Option<Self> {
         let closed_loop = model.closed_loop.as_deref()?;
-        let Law::Linear(law) = model.law else { return None };
+        let law = model.law;
         let contact = &state.links[CONTACT];
-        if !(contact.closed || law.bonded) || state.circuits.is_interrupted(CONTACT) {
+        if !(contact.closed || law.never_opens()) || state.circuits.is_interrupted(CONTACT) {
             return None;
         }
-        let growth = law.stiffness * drive.velocities[0];
+        let growth = law.coefficient * drive.velocities[0];
         let steady = Steady {
             acceleration: drive.acceleration(state.time),
             jerk: drive.jerk,
-            force: law.stiffness * state.displacements[0] + law.damping * growth,
+            force: law.coefficient * state.displacements[0] + law.damping * growth,
             growth,
         };
         let phasor = model.generator.phasor(state.time);
         // The force must stay above zero, or above the threshold of an interruption.
         let criterion = model.links.first().and_then(|link| link.criterion);
         let least = criterion.map_or(0.0, |criterion| criterion.force);
-        let watched = !model.law.never_opens() || least > 0.0;
+        let watched = !law.never_opens() || least > 0.0;
         let margin = if watched {
             let steady = closed_loop.least_steady_force(model.preload.force, &steady, phasor, length);
             steady - least

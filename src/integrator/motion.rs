@@ -262,7 +262,7 @@ impl Motion {
     pub(crate) fn friction_rates(&self, model: &Model) -> (f64, Slip) {
         let state = self.state();
         let none = (0.0, Slip::default());
-        let (Some((index, friction)), Some(law)) = (model.friction(), model.law.power()) else { return none };
+        let (law, Some((index, friction))) = (&model.law, model.friction()) else { return none };
         let Some((link, along, dense)) = self.seen(model, index).filter(|_| self.size > 0.0) else { return none };
         let contact = &state.links[CONTACT];
         let of_slip = |y: f64| value_and_slope(&self.dense.slip.slip, y).1 / self.length();

@@ -57,7 +57,7 @@ pub(crate) fn rests_until(model: &Model, state: &State, drive: &Drive, end: f64)
     let acceleration = drive.acceleration(state.time);
     let mut axial = None;
     if let Some(feedback) = model.axial.as_deref() {
-        let damped = model.law.damping() > 0.0 || model.modes.iter().all(|mode| mode.damping > 0.0);
+        let damped = model.law.damping > 0.0 || model.modes.iter().all(|mode| mode.damping > 0.0);
         if !damped || feedback.strength(&model.modes, &state.modes) > WEAK {
             least = at_equilibrium;
         }

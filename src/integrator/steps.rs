@@ -162,7 +162,7 @@ impl Stepper<'_> {
     fn leaving_kink(&self, length: f64) -> (f64, f64) {
         let State { time, last_kink, kink_is_closing, slip, .. } = *self.state;
         let elapsed = time - last_kink;
-        let slides = self.model.law.damping() > 0.0 && slip.last_change == Some(last_kink);
+        let slides = self.model.law.damping > 0.0 && slip.last_change == Some(last_kink);
         let most = if slides { STEP_GROWTH * STEP_GROWTH } else { STEP_GROWTH };
         if slides && elapsed == 0.0 {
             (most, most)

@@ -16,7 +16,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     at.closed = !at.closed;
     let closed = at.closed;
     log.record(log::Event { time, closes: closed, link: index });
-    let touch = link.contact().and_then(|law| law.power()).filter(|_| closed);
+    let touch = link.contact().filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));
     if closed {
         at.last_closing = Some(time);

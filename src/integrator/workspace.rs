@@ -5,7 +5,7 @@ use bytemuck::zeroed_box;
 use crate::beam::mode::ModeStates;
 use crate::closed_loop::dense::{DensePropagator, TipAtNodes};
 use crate::closed_loop::propagator::{ByLength, Propagator};
-use crate::contact::power::Power;
+use crate::contact::law::Law;
 use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::{Cache, Left, OF_LONG, OF_SHORT};
@@ -17,6 +17,7 @@ use crate::integrator::constants::HALVINGS;
 use crate::integrator::events::log::Events;
 use crate::integrator::events::swings::Swings;
 use crate::integrator::motion::Motion;
+use crate::link::Link;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::shared::Home;
@@ -55,8 +56,8 @@ pub struct Workspace {
 /// See [`Workspace::longest_leap`]: leaps are for a model whose contact force is smooth by the root of the time since a closing, and
 /// all that happens after it.
 fn longest_leap(model: &Model) -> Option<f64> {
-    let is_smooth = |law: &Power| (2.0 * law.exponent).fract() == 0.0;
-    let mut laws = model.links.iter().filter_map(|link| link.contact()?.power());
+    let is_smooth = |law: &Law| (2.0 * law.exponent).fract() == 0.0;
+    let mut laws = model.links.iter().filter_map(Link::contact);
     let leaps = laws.all(is_smooth) && model.axial.is_none() && model.friction().is_none();
     let longest = model.modes.iter().map(ModeOverStep::longest_by_root);
     leaps.then(|| longest.fold(f64::INFINITY, f64::min))

@@ -2,7 +2,7 @@
 
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Generator, Law, Linear, Mode, Model, Power, Preload, State};
+use relay_contact::reference::{Generator, Law, Mode, Model, Opening, Preload, State};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::PusherKind;
@@ -56,9 +56,7 @@ impl Rig {
     /// Allows a bonded contact to open from now on.
     pub fn unbond(&mut self) {
         let model = self.model.clone().with(|model| {
-            if let Law::Linear(linear) = &mut model.law {
-                linear.bonded = false;
-            }
+            model.law.opening = Opening::Tension;
         });
         *self = Self::at(model, &self.state);
     }
@@ -87,12 +85,11 @@ impl Rig {
             .zip(&state.modes)
             .map(|(mode, at)| 0.5 * (at.v * at.v + mode.omega_squared * at.q * at.q))
             .sum();
-        let contact = |d: f64| match model.law {
-            Law::Power(power) => power.elastic_force(d) * d.max(0.0) / (power.exponent + 1.0),
-            Law::Linear(Linear { stiffness, offset, bonded, .. }) => {
-                let overlap = if bonded { d - offset } else { (d - offset).max(0.0) };
-                0.5 * stiffness * overlap * overlap
-            }
+        let law = model.law;
+        let contact = |d: f64| {
+            let d = d - law.offset;
+            let indented = if law.never_opens() { d.abs() } else { d.max(0.0) };
+            law.elastic_force(indented) * indented / (law.exponent + 1.0)
         };
         let Preload { indentation, force, pusher_force, pusher_overlap, .. } = model.preload;
         let deviation = state.contact().approach;
@@ -163,15 +160,10 @@ pub fn oscillator(mass: f64, stiffness: f64) -> Mode {
 
 /// A spring (N/m) that acts only in compression.
 pub fn stop(stiffness: f64) -> Law {
-    Law::Linear(Linear { stiffness, damping: 0.0, offset: 0.0, bonded: false })
+    Law { opening: Opening::Tension, ..Law::linear(stiffness, 0.0) }
 }
 
 /// Hertzian contact `k d^(3/2)` (N/m^1.5) with the damping time (s).
 pub fn hertz(coefficient: f64, damping: f64) -> Law {
-    power(coefficient, 1.5, damping)
-}
-
-/// Contact `c d^p` with the damping time (s); `c` in N/m^p.
-pub fn power(coefficient: f64, exponent: f64, damping: f64) -> Law {
-    Law::Power(Power { coefficient, exponent, damping, traces: 0.0, least: 0.0 })
+    Law::power(coefficient, 1.5, damping)
 }

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
 use relay_contact::inputs::Inputs;
-use relay_contact::reference::{Law, Model, Space};
+use relay_contact::reference::{Model, Space};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
@@ -43,7 +43,7 @@ fn from_rest(omega_squared: f64, damping: f64, t: f64) -> (f64, f64) {
 /// The force above the preload force, by the closed form.
 fn force(model: &Model, t: f64) -> f64 {
     let preload = &model.preload;
-    let beta = model.law.damping();
+    let beta = model.law.damping;
     Space::new(model.modes.len())
         .modes(&model.section, preload.axial_force, preload.contact_stiffness)
         .unwrap()
@@ -172,8 +172,7 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
     let length = 3e-6;
     let mut rig = Rig::new(Model::new(scene, 0.0).unwrap());
     let model = rig.model.clone();
-    let Law::Linear(contact) = &model.law else { panic!() };
-    let (k, beta_c) = (contact.stiffness, contact.damping);
+    let (k, beta_c) = (model.law.coefficient, model.law.damping);
     let (n, omega) = (model.modes.len(), TAU * scene.excitation.frequency);
     // q_i w, v_i, then u, u', acceleration of the input, sine, cosine, jerk: w makes displacements as large as velocities.
     let w = model.modes.last().unwrap().omega_squared.sqrt();

@@ -197,7 +197,7 @@ pub(super) fn estimate_in_flight<const S: usize>(
         let rows = free.axial.as_ref().unwrap_or(&step.acceleration(link.port).defect);
         let defect = if free.axial.is_some() { 1.0 } else { free.start_defect.abs() };
         let most = |values: &Nodal<S>| greatest(values) * defect;
-        let wrong = most(&rows.d) + law.damping() * most(&rows.rate) + missed_velocity * (model.memory + law.damping());
+        let wrong = most(&rows.d) + law.damping * most(&rows.rate) + missed_velocity * (model.memory + law.damping);
         let stiffness = law.tangent_stiffness(model.force_scale);
         at_end = at_end.max(stiffness * wrong);
         // At the end the velocity is that of the quadrature.

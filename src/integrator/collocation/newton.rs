@@ -14,7 +14,6 @@
 
 use bytemuck::Zeroable;
 
-use crate::contact::law::Law;
 use crate::integrator::collocation::coefficients::{Columns, NodalMotion, Response, StepCoefficients};
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::polynomial::Collocation;
@@ -243,7 +242,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
                 }
                 // It comes after its contact.
                 LinkLaw::Friction(friction) if L > 1 && a > 0 => {
-                    let Some(law) = contact.contact().and_then(Law::power) else { continue };
+                    let Some(law) = contact.contact() else { continue };
                     for k in 0..S {
                         let z = -motion.d[k] - self.state.slip.way;
                         let d = contact.approach + motions[a - 1].d[k];
@@ -364,7 +363,7 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             (stiffness, damping) = (collocation.mean(&of_way[a]).abs(), collocation.mean(&of_rate[a]));
         } else if let Some(law) = link.contact() {
             let start = law.stiffness(link.approach + self.state.links[index].approach);
-            (stiffness, damping) = (stiffness.max(start), damping.max(law.damping() * start));
+            (stiffness, damping) = (stiffness.max(start), damping.max(law.damping * start));
         }
         let (d, rate) = self.responses[a][a].columns.at_end(&[1.0; S]);
         let gain = (stiffness * d + damping * rate).max(0.0);

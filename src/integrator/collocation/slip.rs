@@ -87,7 +87,10 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
     let (contact, along) = (&links[CONTACT], &links[rubbing]);
     *slip = SlipNodes { deflections: [0.0; S], rates: [0.0; S], fading: 0.0 };
     let start = -state.links[rubbing].approach - state.slip.way;
-    let (true, Some(law)) = (state.links[CONTACT].closed, model.law.power()) else { return };
+    if !state.links[CONTACT].closed {
+        return;
+    }
+    let law = &model.law;
     let Some(sign) = state.slip.phase.sign() else {
         slip.deflections = along.approaches.map(|approach| -approach - state.slip.way);
         return;

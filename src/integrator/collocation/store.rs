@@ -66,7 +66,7 @@ impl Basis {
             modes: model.modes.clone(),
             ports: model.ports.clone(),
             axial: model.axial.is_some(),
-            rubbing: model.friction().map(|_| model.law.damping()),
+            rubbing: model.friction().map(|_| model.law.damping),
             portable: matches!(model.simd, Simd::Portable),
         }
     }
@@ -296,7 +296,7 @@ impl<const S: usize> Store<S> {
             response.set(sum, simd, shapes, h);
         }
         if sizes.following > 0 {
-            let following = compiled_for!(simd, A => following::<S, A>(model.law.damping(), h, shapes));
+            let following = compiled_for!(simd, A => following::<S, A>(model.law.damping, h, shapes));
             part_mut(&mut self.following, place, sizes.following).copy_from_slice(&following);
         }
     }

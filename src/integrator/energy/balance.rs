@@ -118,10 +118,7 @@ fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
                 }
                 LinkLaw::Friction(friction) => {
                     let contact = model.links.get(CONTACT).zip(motion.links.get(CONTACT));
-                    let law = model.law.power();
-                    let (Some((contact, across)), Some(law), true) = (contact, law, state.links[CONTACT].closed) else {
-                        continue;
-                    };
+                    let (Some((contact, across)), true) = (contact, state.links[CONTACT].closed) else { continue };
                     let (Some(across), Some(across_rate)) = (across.approaches.get(k), across.rates.get(k)) else {
                         continue;
                     };
@@ -129,7 +126,7 @@ fn powers(model: &Model, state: &State, motion: &Trial<LONG>) -> Nodal<LONG> {
                         sign * friction.coefficient * contact.force_at(*across, *across_rate)
                     } else {
                         let across = contact.approach + across;
-                        friction.trial(law, across, -d - state.slip.way, -rate).force
+                        friction.trial(&model.law, across, -d - state.slip.way, -rate).force
                     };
                     (link.force + force - expected) * rate
                 }

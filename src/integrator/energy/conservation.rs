@@ -22,7 +22,7 @@ pub(crate) fn conserves(model: &Model, drive: &Drive) -> bool {
     // An axial force that follows the deflection has no potential, nor has friction.
     undamped
         && model.axial.is_none()
-        && laws.all(|law| law.is_some_and(|law| law.damping() == 0.0))
+        && laws.all(|law| law.is_some_and(|law| law.damping == 0.0))
         && model.generator == Generator::None
         && drive.jerk == 0.0
 }

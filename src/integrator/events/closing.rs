@@ -96,7 +96,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             law,
             start,
             unsure,
-            negligible: law.overlap(self.whole.model.tolerance.at_event).max(unsure),
+            negligible: law.indentation(self.whole.model.tolerance.at_event).max(unsure),
         };
         Some((sought, samples))
     }
@@ -155,7 +155,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn is_resolved(&self, sought: &Sought, cubic: &Cubic) -> bool {
         let ripple = self.search.swings.ripple(cubic);
         let [from, to] = [&cubic.a, &cubic.b].map(|sample| sought.engagement(sample));
-        ripple.displacement + sought.law.damping() * ripple.velocity <= UNSEEN * (to - from).abs()
+        ripple.displacement + sought.law.damping * ripple.velocity <= UNSEEN * (to - from).abs()
     }
 
     /// The first instant of closing between two samples; `error` (m) is the error of their cubic. Where that cannot tell, the

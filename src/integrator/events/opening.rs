@@ -32,7 +32,7 @@ impl<const S: usize> Locator<'_, S> {
         let Whole { collocation, trial, .. } = self.whole;
         let nodes = trial.links.get(index)?;
         let law = link.contact()?;
-        let traces = law.traces();
+        let traces = law.traces;
         let open = |d: f64, rate: f64| link.engagement(d, rate) <= 0.0;
         let motion = nodes.approaches.iter().zip(&nodes.rates);
         let node = collocation.nodes.iter().zip(motion).find(|(_, (d, rate))| open(**d, **rate)).map(|(node, _)| *node);

@@ -6,7 +6,6 @@
 
 use crate::contact::friction::{Friction, Phase};
 use crate::contact::law::Law;
-use crate::contact::power::Power;
 use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::polynomial::Collocation;
@@ -38,20 +37,14 @@ struct Rubbing<'a> {
     along: (&'a Link, &'a LinkState),
     index: usize,
     friction: &'a Friction,
-    law: &'a Power,
+    law: &'a Law,
 }
 
 impl<'a, const S: usize> Locator<'a, S> {
     fn rubbing(&self) -> Option<Rubbing<'a>> {
         let (index, friction) = self.whole.model.friction()?;
         let contact = self.link(CONTACT)?;
-        Some(Rubbing {
-            contact,
-            along: self.link(index)?,
-            index,
-            friction,
-            law: contact.0.contact().and_then(Law::power)?,
-        })
+        Some(Rubbing { contact, along: self.link(index)?, index, friction, law: contact.0.contact()? })
     }
 
     /// Where in the trial the contact first begins or ceases to slip.
@@ -68,7 +61,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let ((y, slope), phase) = if let Some(sign) = whole.state.slip.phase.sign() {
             // The friction force that is missing for the slip velocity.
             let damping = law.damping;
-            let stiffness = friction.ratio * law.tangent_stiffness(law.indentation(whole.model.force_scale));
+            let stiffness = friction.ratio * law.tangent_stiffness(whole.model.force_scale);
             let wrong = scaled(&whole.trial.slip.rates, sign * stiffness * (damping + whole.length));
             let before = if is_long::<S>(whole.length, damping) {
                 dot::<S, Separate>(&wrong, &whole.collocation.at_start)
@@ -148,7 +141,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             let start = -along_at.approach - whole.state.slip.way - slip.fading;
             let course = whole.collocation.through(whole.model.simd, start, &slip.deflections);
             let z = value_at(&course, end.at / whole.length - 1.0) + slip.left(end.at, law.damping);
-            friction.ratio * law.tangent_stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
+            friction.ratio * law.stiffness(d) * friction.turned(law, sign, (d, end.rate), (z, -along.rate))
         } else {
             let stick = friction.trial(law, d, -along.d - whole.state.slip.way, -along.rate);
             let limit = friction.coefficient * law.closed_branch(d, end.rate).force;
@@ -165,7 +158,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let (displacement, velocity) = motion_rounding(model, along, state);
         let slip = MOTION_ROUNDING * state.slip.way.abs();
         let moved = slip + displacement + law.damping * velocity;
-        let stiffness = law.tangent_stiffness(contact.approach + contact_at.approach);
+        let stiffness = law.stiffness(contact.approach + contact_at.approach);
         let engagement = engagement_rounding(model, (contact, contact_at), state);
         stiffness * (friction.ratio * moved + friction.coefficient * engagement)
     }
