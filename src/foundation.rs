@@ -53,7 +53,7 @@ impl Model {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
                 value: preload.axial_force,
-                limit: spring.buckling_load,
+                limit: spring.statics.buckling_load(),
             });
         };
         let resolution = springs.resolution(&basis, &own);

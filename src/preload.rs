@@ -152,7 +152,7 @@ impl<'a> Pressed<'a> {
     }
 
     fn check_buckling(&self, axial_force: f64) -> Result<(), SceneError> {
-        let limit = self.springs.moving.buckling_load;
+        let limit = self.springs.moving.statics.buckling_load();
         if axial_force < limit {
             return Ok(());
         }

@@ -64,7 +64,7 @@ pub fn on_spring(scene: &mut Scene) {
 /// Compressed by 0.4 of its buckling load.
 fn compressed(scene: &mut Scene) {
     scene.effects.axial_force = AxialForceKind::Prescribed;
-    scene.beam.axial_force = 0.4 * Spring::new(scene).buckling_load;
+    scene.beam.axial_force = 0.4 * Spring::new(scene).statics.buckling_load();
 }
 
 /// Bent by half its length against a soft contact: the axial force is 0.4 of the buckling load and follows the tip.

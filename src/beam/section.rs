@@ -35,11 +35,6 @@ impl Section {
         (self.mass_per_length * self.length / 2.0, 8.0 * self.bending_stiffness / self.length.powi(3))
     }
 
-    /// Axial compression at which the cantilever without contact buckles, pi^2 E I / (4 L^2), N.
-    pub fn buckling_load(&self) -> f64 {
-        (std::f64::consts::PI / (2.0 * self.length)).powi(2) * self.bending_stiffness
-    }
-
     /// Rate of its bending waves, the root of E I / (rho A L^4), 1/s: 3.516 of it is the first angular frequency without rivet.
     pub fn rate(&self) -> f64 {
         (self.bending_stiffness / self.mass_per_length).sqrt() / (self.length * self.length)

@@ -24,8 +24,6 @@ pub struct Spring {
     pub section: Section,
     /// Static compliance at the contact.
     pub statics: Statics,
-    /// Axial compression at which the spring buckles without contact, N.
-    pub buckling_load: f64,
     form: Form,
 }
 
@@ -67,12 +65,7 @@ impl Spring {
                 let given = Given::new(modes);
                 let section = given.equivalent();
                 let space = given.space(&given.modes(MAX_MODES, (0.0, 0.0)));
-                Self {
-                    section,
-                    buckling_load: f64::INFINITY,
-                    statics: Statics::of(&section, space),
-                    form: Form::Modes(given),
-                }
+                Self { section, statics: Statics::of(&section, space), form: Form::Modes(given) }
             }
         }
     }
@@ -83,17 +76,12 @@ impl Spring {
             let section = ritz::equivalent(pieces);
             (section, Statics::of(&section, ritz::static_space(pieces, &section)))
         });
-        Self { section, buckling_load: statics.buckling_load(), statics, form: Form::Segments(pieces) }
+        Self { section, statics, form: Form::Segments(pieces) }
     }
 
     /// The spring of a uniform section.
     pub fn uniform(section: &Section) -> Self {
-        Self {
-            section: *section,
-            buckling_load: section.buckling_load(),
-            statics: Statics::new(section),
-            form: Form::Uniform,
-        }
+        Self { section: *section, statics: Statics::new(section), form: Form::Uniform }
     }
 
     /// Axial force at a deflection of the tip (m), N.

@@ -79,8 +79,8 @@ impl Statics {
         Self { section: *section, terms: Term::of(space) }
     }
 
-    /// Axial compression at which the cantilever without contact buckles, N.
-    pub(super) fn buckling_load(&self) -> f64 {
+    /// Axial compression at which the cantilever without contact buckles, N; infinite for a spring given by its modes.
+    pub fn buckling_load(&self) -> f64 {
         let largest = self.terms.iter().map(|term| term.sigma).fold(0.0, f64::max);
         4.0 * self.section.bending_stiffness / (self.section.length.powi(2) * largest)
     }

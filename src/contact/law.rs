@@ -15,7 +15,6 @@
 //! Linearised: `F = max(0, F_0 + k_j0 (d - d_0) + beta_c k_j0 d')`, which the modal and frequency-domain analyses of Machines 2025,
 //! 13(1), 52 use; bonded: the same without `max`. It is the power 1 of `d - d_0 + F_0 / k_j0`, and closed while `g` is positive.
 
-use crate::contact::{Branch, Branches};
 use crate::math::nodal::Nodal;
 use crate::scene::{Contact, Material, Scene};
 use crate::variables::ContactLawKind;
@@ -29,6 +28,17 @@ const TRACES: f64 = 1e-3;
 
 /// The same that is mere rounding, in the force scale, 1.
 const ROUNDING: f64 = f64::EPSILON;
+
+/// Force on the closed branch of the law, with its partial derivatives: of a motion, or of several by arrays.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Branch<T = f64> {
+    /// Force, N.
+    pub force: T,
+    /// dF/dd, N/m.
+    pub stiffness: T,
+    /// dF/dd', N s/m.
+    pub damping: T,
+}
 
 /// What opens a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -346,13 +356,14 @@ impl Law {
     /// opens.
     #[inline(always)]
     pub fn closed_branch(&self, d: f64, rate: f64) -> Branch {
-        self.closed_branches(&[d], &[rate]).into()
+        let Branch { force: [force], stiffness: [stiffness], damping: [damping] } = self.closed_branches(&[d], &[rate]);
+        Branch { force, stiffness, damping }
     }
 
     /// The same at several indentations (m) and velocities (m/s), which the processor computes in parallel.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "arrays of fixed size")]
-    pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branches<S> {
+    pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branch<Nodal<S>> {
         // Chosen rather than branched to, and anything where it is open; NaN is not.
         let held = d.map(|d| if d <= 0.0 { 1.0 } else { d });
         let slopes = match self.exponent {
@@ -362,16 +373,16 @@ impl Law {
         };
         let (coefficient, exponent, by_rate) = (self.coefficient, self.exponent, self.by_rate());
         let parts = self.opening == Opening::Parting;
-        let [mut forces, mut stiffness, mut damping] = [[0.0; S]; 3];
+        let [mut force, mut stiffness, mut damping] = [[0.0; S]; 3];
         for k in 0..S {
             let slope = coefficient * slopes[k];
             let slope = if d[k] <= 0.0 && parts { 0.0 } else { slope };
             let g = self.resisted(d[k], rate[k]);
-            forces[k] = slope * g;
+            force[k] = slope * g;
             stiffness[k] = slope * (1.0 + (exponent - 1.0) * g / held[k]);
             damping[k] = by_rate * slope;
         }
-        Branches { forces, stiffness, damping }
+        Branch { force, stiffness, damping }
     }
 }
 

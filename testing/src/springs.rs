@@ -82,7 +82,7 @@ impl Relay {
         let spring = Spring::new(scene);
         let softer = stiffness / spring.section.tip_stiffness();
         scene.contact.overtravel = (scene.contact.overtravel * softer).clamp(-0.01, 0.01);
-        scene.beam.axial_force *= 0.5 * spring.buckling_load / (stiffness * scene.beam.length * 0.822);
+        scene.beam.axial_force *= 0.5 * spring.statics.buckling_load() / (stiffness * scene.beam.length * 0.822);
         relay
     }
 }

@@ -234,11 +234,11 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
             match &link.law {
                 LinkLaw::Contact(law) => {
                     let d = motion.d.map(|d| link.approach + d);
-                    let branches = law.closed_branches(&d, &motion.rate);
-                    for (residual, force) in residuals[a].iter_mut().zip(&branches.forces) {
+                    let branch = law.closed_branches(&d, &motion.rate);
+                    for (residual, force) in residuals[a].iter_mut().zip(&branch.force) {
                         *residual -= force - link.force;
                     }
-                    (laws.stiffness[a], laws.damping[a]) = (branches.stiffness, branches.damping);
+                    (laws.stiffness[a], laws.damping[a]) = (branch.stiffness, branch.damping);
                 }
                 // It comes after its contact.
                 LinkLaw::Friction(friction) if L > 1 && a > 0 => {
