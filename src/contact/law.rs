@@ -327,7 +327,7 @@ impl Law {
     /// above the least, and `g`.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
         match self.opening {
-            Opening::Parting => (d - self.least).min(self.resisted(d, rate)),
+            Opening::Parting => (d - self.least).min(d + self.by_rate() * rate),
             Opening::Tension => self.resisted(d, rate),
             Opening::Never => f64::INFINITY,
         }
@@ -364,25 +364,33 @@ impl Law {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "arrays of fixed size")]
     pub(crate) fn closed_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branch<Nodal<S>> {
+        if self.opening != Opening::Parting {
+            return self.linear_branches(d, rate);
+        }
         // Chosen rather than branched to, and anything where it is open; NaN is not.
         let held = d.map(|d| if d <= 0.0 { 1.0 } else { d });
-        let slopes = match self.exponent {
-            HERTZ => held.map(f64::sqrt),
-            1.0 => [1.0; S],
-            exponent => powers(&held, exponent - 1.0),
-        };
+        let slopes = if self.exponent == HERTZ { held.map(f64::sqrt) } else { powers(&held, self.exponent - 1.0) };
         let (coefficient, exponent, by_rate) = (self.coefficient, self.exponent, self.by_rate());
-        let parts = self.opening == Opening::Parting;
         let [mut force, mut stiffness, mut damping] = [[0.0; S]; 3];
         for k in 0..S {
             let slope = coefficient * slopes[k];
-            let slope = if d[k] <= 0.0 && parts { 0.0 } else { slope };
-            let g = self.resisted(d[k], rate[k]);
+            let slope = if d[k] <= 0.0 { 0.0 } else { slope };
+            let g = d[k] + by_rate * rate[k];
             force[k] = slope * g;
             stiffness[k] = slope * (1.0 + (exponent - 1.0) * g / held[k]);
             damping[k] = by_rate * slope;
         }
         Branch { force, stiffness, damping }
+    }
+
+    /// The same of the linearised law.
+    #[inline(always)]
+    fn linear_branches<const S: usize>(&self, d: &Nodal<S>, rate: &Nodal<S>) -> Branch<Nodal<S>> {
+        let mut force = *d;
+        for (force, rate) in force.iter_mut().zip(rate) {
+            *force = self.coefficient * self.resisted(*force, *rate);
+        }
+        Branch { force, stiffness: [self.coefficient; S], damping: [self.damping * self.coefficient; S] }
     }
 }
 
