@@ -5,48 +5,20 @@ use crate::error::{StepError, StepErrorCause};
 use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::integrator::constants::{COARSEST, MANY_STEPS};
-use crate::integrator::dense_output::DenseOutput;
-use crate::integrator::energy::conservation::conserves;
 use crate::integrator::exact_step;
 use crate::integrator::extremes::Extremes;
 use crate::integrator::grid::Grid;
 use crate::integrator::motion::Motion;
 use crate::integrator::recorder::Recorder;
 use crate::integrator::rest::rests_until;
-use crate::integrator::stepper::{Progress, Stepper, resolution};
-use crate::integrator::with_contact;
-use crate::integrator::workspace::{Budget, Workspace};
+use crate::integrator::stepper::{Stepper, resolution};
+use crate::integrator::workspace::Workspace;
 use crate::link::Ways;
 use crate::model::Model;
 use crate::state::State;
 use crate::variables::RealInput;
 
-/// How far to advance.
-#[derive(Debug)]
-pub(crate) enum Steps<'a> {
-    /// From `time` exactly to `time + size`.
-    Exactly {
-        /// s.
-        time: f64,
-        /// s.
-        size: f64,
-        /// Whether such a size is expected again.
-        recurs: bool,
-        /// Whether an input is another one than before.
-        driven: bool,
-    },
-    /// By one step as long as the error allows, with dense output.
-    Own {
-        /// Dense output is read from here on where the step goes beyond it, within the tolerance, s.
-        until: f64,
-        /// The links during the step.
-        dense: &'a mut DenseOutput,
-        /// The state at its start, to which events are added that happen there.
-        start: &'a mut State,
-    },
-}
-
-/// Advances the state.
+/// Integrates from the start of a grid, which has no step behind it, exactly to its end. `driven`: an input is another one than before.
 ///
 /// # Errors
 /// A [`StepError`]; the state is then undefined.
@@ -55,55 +27,46 @@ pub(crate) fn advance(
     state: &mut State,
     workspace: &mut Workspace,
     drive: Drive,
-    steps: Steps,
+    grid: Grid,
+    driven: bool,
     extremes: Option<&mut Extremes>,
 ) -> Result<(), StepError> {
-    let mut recorder = Recorder { extremes, ..Recorder::default() };
-    let (grid, driven) = match steps {
-        Steps::Exactly { time, size, recurs, driven } => {
-            exact_step::leave_before_rest(model, state, &drive);
-            state.time = rests_until(model, state, &drive, time + size).unwrap_or(time);
-            let remaining = size - (state.time - time);
-            if remaining <= 0.0 {
-                return Ok(());
-            }
-            check_spacing(model, state.time, remaining)?;
-            if exact_step::step_exactly(model, state, workspace, &drive, remaining) {
-                return Ok(());
-            }
-            let grid = Grid { recurs, ..Grid::over(state.time, remaining) };
-            // A blow would make more of an error than it is here.
-            let never_opened = state.is_closed() && !state.has_switched();
-            (grid, driven && never_opened)
-        }
-        Steps::Own { until, dense, start } => {
-            let size = state.lengths.own();
-            check_spacing(model, state.time, size)?;
-            if exact_step::step_ahead(model, state, workspace, &drive, (until, &mut *dense)) {
-                return Ok(());
-            }
-            (recorder.read, recorder.dense, recorder.start) = (Some(until), Some(dense), Some(start));
-            (Grid::free(state.time, size), false)
-        }
-    };
-    with_contact::leave(model, state);
-    let conserves = conserves(model, &drive);
-    Stepper {
-        model,
-        state,
-        budget: Budget::new(workspace),
-        workspace,
-        drive,
-        grid,
-        recorder,
-        progress: Progress {
-            // Without any damping errors add up over the more steps that this takes.
-            driven: driven && !conserves,
-            conserves,
-            ..Progress::default()
-        },
+    exact_step::leave_before_rest(model, state, &drive);
+    state.time = rests_until(model, state, &drive, grid.end()).unwrap_or(grid.start);
+    let remaining = grid.size - (state.time - grid.start);
+    if remaining <= 0.0 {
+        return Ok(());
     }
-    .run()
+    check_spacing(model, state.time, remaining)?;
+    if exact_step::step_exactly(model, state, workspace, &drive, remaining) {
+        return Ok(());
+    }
+    let grid = Grid { recurs: grid.recurs, ..Grid::over(state.time, remaining) };
+    // A blow would make more of an error than it is here.
+    let never_opened = state.is_closed() && !state.has_switched();
+    let recorder = Recorder { extremes, ..Recorder::default() };
+    Stepper::new(model, state, workspace, drive, grid, recorder).run(driven && never_opened)
+}
+
+/// Takes one step as long as the error allows, from the end of the motion. Where it goes beyond `until` (s), its dense output is within
+/// the tolerance from there on.
+///
+/// # Errors
+/// A [`StepError`]; the motion is then undefined.
+fn step_freely(model: &Model, motion: &mut Motion, workspace: &mut Workspace, until: f64) -> Result<(), StepError> {
+    let Motion { start, end, dense, drive, .. } = motion;
+    *start = *end;
+    let size = end.lengths.own();
+    check_spacing(model, end.time, size)?;
+    if !exact_step::step_ahead(model, end, workspace, drive, (until, &mut *dense)) {
+        let grid = Grid::free(end.time, size);
+        let recorder = Recorder { read: Some(until), dense: Some(dense), start: Some(start), extremes: None };
+        Stepper::new(model, end, workspace, *drive, grid, recorder).run(false)?;
+    }
+    if motion.length() <= 0.0 {
+        motion.start = motion.end;
+    }
+    Ok(())
 }
 
 /// Checks that floating-point numbers of time lie close enough for the motion from `time` (s) over `size` (s).
@@ -130,21 +93,6 @@ pub fn step(
     time: f64,
     size: f64,
 ) -> Result<(), StepError> {
-    if model.scene.effects.extremes {
-        step_by::<true>(model, motion, workspace, inputs, (time, size))
-    } else {
-        step_by::<false>(model, motion, workspace, inputs, (time, size))
-    }
-}
-
-/// [`step`], compiled with and without the extremes.
-fn step_by<const EXTREMES: bool>(
-    model: &Model,
-    motion: &mut Motion,
-    workspace: &mut Workspace,
-    inputs: &Inputs,
-    (time, size): (f64, f64),
-) -> Result<(), StepError> {
     check_size(time, size)?;
     let until = time + size;
     // An importer's rounded time may put the end before the point already reached: no time passes then.
@@ -154,30 +102,34 @@ fn step_by<const EXTREMES: bool>(
     let size = if model.closed_loop.is_none() && is_repeated { motion.size } else { size };
     let since = motion.time;
     workspace.events.forget_until(since);
+    workspace.search.work = 0;
     // The fixed contacts move at constant velocity to their positions at the end of the step.
     let displacements = displaced(model, inputs, time, size)?;
     let drive = Drive::new(inputs, time, size, motion.ways(displacements));
     let steady = drive.continues(&motion.drive);
-    let drive = if steady { motion.drive } else { drive };
-    let ahead = motion.time < motion.end.time;
-    // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
-    let inside = steady && until < motion.end.time;
-    let mut extremes = EXTREMES.then(|| motion.extremes_now(model));
-    if inside {
+    let mut extremes = model.scene.effects.extremes.then(|| motion.extremes_now(model));
+    if steady && until < motion.end.time {
+        // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
         if let Some(extremes) = &mut extremes {
             motion.add_dense(extremes, model, since, until);
         }
     } else if steady {
-        go_ahead(model, motion, workspace, until, extremes.as_mut())?;
+        *workspace.former = *motion;
+        step_ahead(model, motion, workspace, until, extremes.as_mut()).inspect_err(|_| {
+            *motion = *workspace.former;
+            workspace.events.forget_after(motion.end.time);
+        })?;
     } else {
-        workspace.former.end = motion.end;
+        *workspace.former = *motion;
+        let ahead = motion.time < motion.end.time;
         let gone_back = if ahead { go_back(model, motion, workspace) } else { Ok(()) };
         // One after a time without changes is none that recurs.
         let driven = !ahead && motion.size > 0.0;
-        let steps = Steps::Exactly { time, size, recurs: !driven || size == motion.size, driven };
-        let done = gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, steps, extremes.as_mut()));
+        let grid = Grid { recurs: !driven || size == motion.size, ..Grid::over(time, size) };
+        let done =
+            gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, grid, driven, extremes.as_mut()));
         done.inspect_err(|_| {
-            motion.end = workspace.former.end;
+            *motion = *workspace.former;
             workspace.events.replace_after(since, motion.events_ahead());
         })?;
         (motion.end.displacements, motion.end.time) = (displacements, until);
@@ -185,9 +137,7 @@ fn step_by<const EXTREMES: bool>(
         motion.drive = drive;
     }
     motion.size = size;
-    if EXTREMES {
-        motion.extremes = extremes;
-    }
+    motion.extremes = extremes;
     motion.time = until;
     motion.current = inputs.after(RealInput::ContactCurrent, size);
     motion.current_rate = inputs.contact_current_rate;
@@ -247,6 +197,7 @@ fn displaced(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<Way
 /// A [`StepError`] where that step fails.
 pub fn state(model: &Model, motion: &Motion, workspace: &mut Workspace) -> Result<State, StepError> {
     let mut state = *motion.state();
+    workspace.search.work = 0;
     go_on(model, &mut state, workspace, motion.drive, motion.time)?;
     Ok(state)
 }
@@ -266,46 +217,16 @@ fn go_on(
     if size <= 0.0 {
         return Ok(());
     }
-    let steps = Steps::Exactly { time, size, recurs: false, driven: false };
-    advance(model, state, workspace, drive, steps, None)
+    let grid = Grid { recurs: false, ..Grid::over(time, size) };
+    advance(model, state, workspace, drive, grid, false, None)
 }
 
 /// Takes integration steps of the integrator's own choice until one reaches `time` (s) or beyond. `extremes` covers the
 /// communication step.
 ///
 /// # Errors
-/// A [`StepError`]; the motion is then unchanged.
-fn go_ahead(
-    model: &Model,
-    motion: &mut Motion,
-    workspace: &mut Workspace,
-    time: f64,
-    extremes: Option<&mut Extremes>,
-) -> Result<(), StepError> {
-    if time <= motion.end.time {
-        // Without a step nothing can fail.
-        return take_steps(model, motion, workspace, time, extremes);
-    }
-    // One after the other: together they would lie on the stack in between.
-    let former = &mut *workspace.former;
-    let (modes, links) = (model.modes.len(), model.links.len());
-    former.start.copy(&motion.start, modes, links);
-    former.end.copy(&motion.end, modes, links);
-    former.dense.copy(&motion.dense, links);
-    take_steps(model, motion, workspace, time, extremes).inspect_err(|_| {
-        let former = &*workspace.former;
-        motion.start = former.start;
-        motion.end = former.end;
-        motion.dense.copy(&former.dense, links);
-        workspace.events.forget_after(motion.end.time);
-    })
-}
-
-/// See [`go_ahead`].
-///
-/// # Errors
 /// A [`StepError`]; the motion is then undefined.
-fn take_steps(
+fn step_ahead(
     model: &Model,
     motion: &mut Motion,
     workspace: &mut Workspace,
@@ -326,9 +247,8 @@ fn take_steps(
     if since < motion.end.time {
         note(motion);
     }
-    let budget = Budget::new(workspace);
     while motion.end.time < time {
-        budget.check(&workspace.search, motion.end.time)?;
+        workspace.search.check(motion.end.time)?;
         if time - motion.end.time >= f64::from(MANY_STEPS) * motion.end.lengths.own()
             && let Some(until) = rests_until(model, &motion.end, &motion.drive, time)
         {
@@ -336,14 +256,7 @@ fn take_steps(
             motion.start = motion.end;
             continue;
         }
-        let Motion { start, end, dense, drive, .. } = motion;
-        start.copy(end, model.modes.len(), model.links.len());
-        let until = time;
-        let steps = Steps::Own { until, dense, start };
-        advance(model, end, workspace, *drive, steps, None)?;
-        if motion.length() <= 0.0 {
-            motion.start = motion.end;
-        }
+        step_freely(model, motion, workspace, time)?;
         note(motion);
     }
     Ok(())

@@ -117,8 +117,7 @@ mod tests {
     use crate::excitation::drive::Drive;
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
-    use crate::integrator::stepper::Progress;
-    use crate::integrator::workspace::{Budget, Workspace};
+    use crate::integrator::workspace::Workspace;
     use crate::link::CONTACT;
     use crate::model::Model;
     use crate::scene::Scene;
@@ -144,16 +143,8 @@ mod tests {
         let mut workspace = Workspace::new(model);
         let (mut closings, mut last) = (0, None);
         let energies = (0..count).map(|k| {
-            let mut stepper = Stepper {
-                model,
-                state,
-                budget: Budget::new(&workspace),
-                workspace: &mut workspace,
-                drive: Drive::default(),
-                grid: Grid::over(step * f64::from(k), step),
-                recorder: Recorder::default(),
-                progress: Progress::default(),
-            };
+            let grid = Grid::over(step * f64::from(k), step);
+            let mut stepper = Stepper::new(model, state, &mut workspace, Drive::default(), grid, Recorder::default());
             let target = stepper.grid.target(step, stepper.state.time, None);
             stepper.take_with_constant_force(&target).unwrap();
             let closing = state.links[CONTACT].last_closing;

@@ -15,15 +15,6 @@ use crate::integrator::workspace::{Room, Rooms, Workspace};
 use crate::link::{CONTACT, MAX_LINKS};
 use crate::math::nodal;
 
-/// A trial is too long to end at an event inside.
-struct Shorter {
-    /// Its error there, and the one allowed, N.
-    error: f64,
-    allowed: f64,
-    /// Whether a contact opens or closes, or the communication step ends.
-    before_event: bool,
-}
-
 impl Stepper<'_> {
     /// The first event in a trial.
     ///
@@ -34,25 +25,6 @@ impl Stepper<'_> {
         trial: &Trial<S>,
         target: &Target,
     ) -> Result<Option<Cut>, StepOutcome>
-    where
-        Workspace: Rooms<S>,
-    {
-        self.first_event(trial, target).map_err(|shorter| {
-            self.progress.before_event |= shorter.before_event;
-            if shorter.before_event && self.state.is_closed() {
-                // More nodes do better inside than a shorter step.
-                self.state.lengths.long = self.state.lengths.long.max(target.length);
-            }
-            let shrink = SAFETY * (shorter.allowed / shorter.error).powf(1.0 / S as f64);
-            self.reject(target.length * shrink.clamp(LEAST_SHRINK, MOST_SHRINK))
-        })
-    }
-
-    /// See [`Stepper::find_end`].
-    ///
-    /// # Errors
-    /// [`Shorter`] where the trial has to be shorter to end at the event.
-    fn first_event<const S: usize>(&mut self, trial: &Trial<S>, target: &Target) -> Result<Option<Cut>, Shorter>
     where
         Workspace: Rooms<S>,
     {
@@ -100,12 +72,17 @@ impl Stepper<'_> {
                 || error <= of_rounding::<S>(model, state, trial, MOTION_ROUNDING)
         };
         if (event || end.is_some()) && !fits() {
-            return Err(Shorter { error, allowed, before_event: true });
+            self.progress.before_event = true;
+            if self.state.is_closed() {
+                // More nodes do better inside than a shorter step.
+                self.state.lengths.long = self.state.lengths.long.max(length);
+            }
+            return Err(self.shorten_before_event::<S>(length, allowed / error));
         }
         // No blow follows a change between stick and slip.
         let inherited = INHERITED * trial.inner_error.total;
         if change.is_some() && inherited > model.tolerance.step.max(trial.rounding) && !is_shortest {
-            return Err(Shorter { error: trial.inner_error.total, allowed: model.tolerance.step, before_event: false });
+            return Err(self.shorten_before_event::<S>(length, model.tolerance.step / trial.inner_error.total));
         }
         let mut first = closes;
         for (index, latest) in suspects.into_iter().enumerate().filter_map(|(index, latest)| Some((index, latest?))) {
@@ -119,6 +96,12 @@ impl Stepper<'_> {
             (_, Some(time)) => Some(Cut { at: time - state.time, time, event: Event::Read }),
             (first, None) => first,
         })
+    }
+
+    /// Rejects a trial of `length` seconds for its error inside: the one allowed there is this share of it.
+    fn shorten_before_event<const S: usize>(&mut self, length: f64, share: f64) -> StepOutcome {
+        let shrink = SAFETY * share.powf(1.0 / S as f64);
+        self.reject(length * shrink.clamp(LEAST_SHRINK, MOST_SHRINK))
     }
 
     /// Takes the trial to `target` up to a cut, in place of a step of `requested` seconds with this growth and the most there is.

@@ -15,7 +15,7 @@ use crate::integrator::grid::{Grid, Target};
 use crate::integrator::recorder::Recorder;
 use crate::integrator::step_length::{StepOutcome, error_of_growth};
 use crate::integrator::transition;
-use crate::integrator::workspace::{Budget, Room, Rooms, Workspace, work};
+use crate::integrator::workspace::{Room, Rooms, Workspace, work};
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::state::State;
@@ -25,7 +25,6 @@ pub(crate) struct Stepper<'a> {
     pub(crate) model: &'a Model,
     pub(crate) state: &'a mut State,
     pub(crate) workspace: &'a mut Workspace,
-    pub(crate) budget: Budget,
     pub(crate) drive: Drive,
     pub(crate) grid: Grid,
     pub(crate) recorder: Recorder<'a>,
@@ -52,7 +51,19 @@ pub(crate) fn resolution(start: f64, size: f64) -> f64 {
     f64::EPSILON * (start.abs() + size)
 }
 
-impl Stepper<'_> {
+impl<'a> Stepper<'a> {
+    /// At the start of a grid.
+    pub(crate) fn new(
+        model: &'a Model,
+        state: &'a mut State,
+        workspace: &'a mut Workspace,
+        drive: Drive,
+        grid: Grid,
+        recorder: Recorder<'a>,
+    ) -> Self {
+        Self { model, state, workspace, drive, grid, recorder, progress: Progress::default() }
+    }
+
     /// Does something with the room for a trial.
     #[inline(always)]
     pub(super) fn with_trial<const S: usize, R>(&mut self, work: impl FnOnce(&mut Self, &mut Trial<S>) -> R) -> R
@@ -150,12 +161,7 @@ impl Stepper<'_> {
     {
         let resolution = self.resolution();
         let (room, search) = self.workspace.parts();
-        Locator {
-            whole: room.whole((self.model, self.state, &self.drive), trial, length),
-            search,
-            budget: self.budget,
-            resolution,
-        }
+        Locator { whole: room.whole((self.model, self.state, &self.drive), trial, length), search, resolution }
     }
 
     /// Accepts the trial as the new state; `false` where it is too long to tell where its forces pass those of interruptions, unless

@@ -9,8 +9,9 @@ use crate::integrator::energy::conservation;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::rest::rests_until;
 use crate::integrator::step_length::{Proposal, StepOutcome, growth, shrinkage};
-use crate::integrator::stepper::Stepper;
+use crate::integrator::stepper::{Progress, Stepper};
 use crate::integrator::transition;
+use crate::integrator::with_contact;
 use crate::integrator::workspace::{Rooms, Workspace};
 use crate::math::nodal::{LONG, SHORT};
 use crate::state::State;
@@ -19,11 +20,15 @@ use crate::state::State;
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 impl Stepper<'_> {
-    /// Takes steps to the end of the grid.
+    /// Takes steps to the end of the grid. `driven`: an input has just changed, in a contact that is closed since the beginning.
     ///
     /// # Errors
     /// A [`StepError`]; the state is then undefined.
-    pub(crate) fn run(&mut self) -> Result<(), StepError> {
+    pub(crate) fn run(&mut self, driven: bool) -> Result<(), StepError> {
+        with_contact::leave(self.model, self.state);
+        let conserves = conservation::conserves(self.model, &self.drive);
+        // Without any damping errors add up over the more steps that this takes.
+        self.progress = Progress { driven: driven && !conserves, conserves, ..Progress::default() };
         let mut speeds = Inputs::MOVING.iter().zip(self.drive.velocities);
         if let Some((input, speed)) = speeds.find(|(_, speed)| speed.abs() > SPEED_OF_LIGHT) {
             let input = input.variable().name;
@@ -38,7 +43,7 @@ impl Stepper<'_> {
             let before = self.state.time;
             self.advance()?;
             // What a search that gave up has not found is not passed over.
-            self.budget.check(&self.workspace.search, before)?;
+            self.workspace.search.check(before)?;
             if self.progress.driven && first.is_none() && self.state.steps > steps {
                 first = Some((self.state.lengths.short, self.state.lengths.long));
             }

@@ -83,7 +83,7 @@ pub(crate) struct Search {
     pub(crate) halves: Vec<(Instant, f64, u32)>,
     /// The modes that oscillate in the trial in which it is sought.
     pub(crate) swings: Swings,
-    /// Work so far, of rejected and probe steps too, in modes at nodes.
+    /// Work in this communication step so far, of rejected and probe steps too, in modes at nodes.
     pub(crate) work: u64,
 }
 
@@ -183,32 +183,18 @@ pub(crate) fn work<const S: usize>(model: &Model, recurring: bool) -> u64 {
     if recurring { nodes } else { NEW_LENGTH * nodes }
 }
 
-/// Limit of the work of a communication step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Budget {
-    /// Value of [`Search::work`] at which it is exhausted.
-    limit: u64,
-}
-
-impl Budget {
-    /// For a communication step that begins now.
-    pub(crate) fn new(workspace: &Workspace) -> Self {
-        let limit = workspace.search.work.saturating_add(WORK);
-        Self { limit }
-    }
-
-    /// Checks the limit at the instant `time` (s).
+impl Search {
+    /// Checks at the instant `time` (s) whether there is work left in this communication step.
     ///
     /// # Errors
-    /// [`StepErrorCause::Budget`] if it is exhausted.
-    pub(crate) fn check(self, search: &Search, time: f64) -> Result<(), StepError> {
+    /// [`StepErrorCause::Budget`] if there is none.
+    pub(crate) fn check(&self, time: f64) -> Result<(), StepError> {
         let cause = StepErrorCause::Budget;
-        let exhausted = self.is_exhausted(search);
-        (!exhausted).then_some(()).ok_or(StepError { time, cause })
+        (!self.is_exhausted()).then_some(()).ok_or(StepError { time, cause })
     }
 
-    /// Whether it is: a search inside a step then gives up, and the step counts for nothing.
-    pub(crate) fn is_exhausted(self, search: &Search) -> bool {
-        search.work >= self.limit
+    /// Whether there is none left: a search inside a step then gives up, and the step counts for nothing.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.work >= WORK
     }
 }

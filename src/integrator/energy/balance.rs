@@ -144,11 +144,10 @@ mod tests {
     use super::*;
     use crate::inputs::Inputs;
     use crate::integrator::collocation::polynomial::{Collocation, SHORT_BY_TIME};
-    use crate::integrator::communication_step::{Steps, advance};
+    use crate::integrator::communication_step::advance;
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
-    use crate::integrator::stepper::{Progress, Stepper};
-    use crate::integrator::workspace::Budget;
+    use crate::integrator::stepper::Stepper;
     use crate::math::nodal::SHORT;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
@@ -168,9 +167,8 @@ mod tests {
         let mut state = model.initial_state(0.0);
         let inputs = Inputs { base_acceleration: 20.0, base_acceleration_rate: 1e5, ..Inputs::default() };
         let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0, 0.0]);
-        let steps = Steps::Exactly { time: 0.0, size: 4e-4, recurs: true, driven: false };
         let mut workspace = Workspace::new(&model);
-        advance(&model, &mut state, &mut workspace, drive, steps, None).unwrap();
+        advance(&model, &mut state, &mut workspace, drive, Grid::over(0.0, 4e-4), false, None).unwrap();
         state.energy_balance = 0.0;
         (model, state, drive)
     }
@@ -187,16 +185,8 @@ mod tests {
         Workspace: Rooms<S>,
     {
         let mut workspace = Workspace::new(model);
-        let mut stepper = Stepper {
-            model,
-            grid: Grid::over(state.time, length),
-            state,
-            budget: Budget::new(&workspace),
-            workspace: &mut workspace,
-            drive,
-            recorder: Recorder::default(),
-            progress: Progress::default(),
-        };
+        let grid = Grid::over(state.time, length);
+        let mut stepper = Stepper::new(model, state, &mut workspace, drive, grid, Recorder::default());
         let target = stepper.grid.target(length, stepper.state.time, None);
         let mut trial: Box<Trial<S>> = bytemuck::zeroed_box();
         stepper.compute(&mut trial, &target).unwrap();

@@ -164,7 +164,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let released = sought.start.last_opening == Some(self.whole.state.time);
         self.search.halves.clear();
         let mut depth = 0;
-        while !self.budget.is_exhausted(self.search) {
+        while !self.search.is_exhausted() {
             let Cubic { a, b } = cubic;
             if sought.engagement(&b) <= sought.unsure {
                 if self.is_clear(sought, &cubic, error) || depth > HALVINGS {

@@ -15,7 +15,7 @@ use crate::contact::law::Law;
 use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::ITERATIONS;
-use crate::integrator::workspace::{Budget, Search, work};
+use crate::integrator::workspace::{Search, work};
 use crate::link::Link;
 use crate::math::prediction::value_at;
 use crate::math::roots;
@@ -50,7 +50,6 @@ pub(crate) struct Cut {
 pub(crate) struct Locator<'a, const S: usize> {
     pub(crate) whole: Whole<'a, S>,
     pub(crate) search: &'a mut Search,
-    pub(crate) budget: Budget,
     /// Rounding of time, s.
     pub(crate) resolution: f64,
 }
