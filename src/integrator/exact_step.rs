@@ -251,14 +251,11 @@ impl<'a> Start<'a> {
 }
 
 /// [`leave`] where constant inputs leave so little motion that the contact may be at rest.
-pub(crate) fn leave_before_rest(model: &Model, state: &mut State, drive: &Drive) {
-    if state.with_contact && drive.is_constant() && !model.generator.is_active(state.time) {
-        leave_if_still(model, state, drive);
-    }
-}
-
 #[inline(never)]
-fn leave_if_still(model: &Model, state: &mut State, drive: &Drive) {
+pub(crate) fn leave_before_rest(model: &Model, state: &mut State, drive: &Drive) {
+    if !state.with_contact || !drive.is_constant() || model.generator.is_active(state.time) {
+        return;
+    }
     let mut free = [0.0; 2 * MAX_MODES];
     let least = UNREST * model.tolerance.force;
     if let Some(start) = Start::new(model, state, drive, 0.0, &mut free)

@@ -39,14 +39,10 @@ pub(crate) fn modes(model: &Model, state: &State) -> ModeStates {
 }
 
 /// Makes a state one of the modes of the cantilever.
+#[inline(never)]
 pub(crate) fn leave(model: &Model, state: &mut State) {
     if state.with_contact {
-        transform_back(model, state);
+        state.modes = modes(model, state);
+        state.with_contact = false;
     }
-}
-
-#[inline(never)]
-fn transform_back(model: &Model, state: &mut State) {
-    state.modes = modes(model, state);
-    state.with_contact = false;
 }
