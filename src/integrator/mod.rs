@@ -111,8 +111,9 @@
 //! from the previous step ([`constants::INHERITED`]): the contact's damper takes it back, and a shorter step would not have less of it.
 //! Step ends lie on a grid: binary fractions of the communication step where it is integrated to its end, and lengths of 1 and 1.5
 //! times powers of two where the integrator runs ahead, and off that grid after an event; the generator's corners (start, end,
-//! crossover) end a step. After a closing a long step is no longer than its polynomials follow a root of the time since to the
-//! tolerance ([`leap`]). A step is never longer than a quarter of the generator's shortest period, nor than `solver.maximumStep`.
+//! crossover) end a step. After a closing the force is smooth in the logarithm of the time since: the next step may be longer in the
+//! ratio in which that time grows, up to where its polynomials follow a root of that time to the tolerance ([`leap`]). A step is never
+//! longer than a quarter of the generator's shortest period, nor than `solver.maximumStep`.
 //!
 //! Work is counted and bounded per communication step ([`workspace::WORK`]): beyond it the step ends with an error that
 //! names the time.

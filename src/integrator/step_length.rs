@@ -53,7 +53,7 @@ impl StepOutcome {
         Self {
             accepted: true,
             switched: false,
-            // Leaving a change to slip just behind it, a step would have any factor.
+            // Leaving a kink just behind it, a step would have any factor.
             growth: growth.min(MOST_GROWTH),
             // A step shortened by the grid keeps the size proposed before.
             length: if length < SAFETY * requested { requested.max(next) } else { next },
@@ -94,8 +94,16 @@ impl StepLengths {
         }
     }
 
-    /// Keeps what a step has shown. `remaining`: what was left to integrate (s) before it.
-    pub(crate) fn keep(&mut self, proposal: Proposal, outcome: &StepOutcome, closed: bool, remaining: f64) {
+    /// Keeps what a step has shown. `remaining`: what was left to integrate (s) before it; `driven`: inputs change in each
+    /// communication step; `blows`: a contact has closed before.
+    pub(crate) fn keep(
+        &mut self,
+        proposal: Proposal,
+        outcome: &StepOutcome,
+        closed: bool,
+        remaining: f64,
+        (driven, blows): (bool, bool),
+    ) {
         match proposal {
             Proposal::Short(_) if outcome.switched => {}
             Proposal::Short(_) => {
@@ -108,7 +116,7 @@ impl StepLengths {
                 let short = self.short;
                 if closed {
                     self.long = outcome.length;
-                    if !outcome.accepted {
+                    if !outcome.accepted && blows {
                         // Nor would a short one reach as far.
                         self.short = short.min(outcome.length / WORTH);
                     }
@@ -117,7 +125,9 @@ impl StepLengths {
                 }
                 // A long step cut far below its possible size: a short one will do next time.
                 if outcome.accepted && !outcome.switched {
-                    self.short = short.max(outcome.growth * remaining.min(long) / LONGER);
+                    // Where inputs change, whether a little more would do shows when it is tried.
+                    let again = if driven { short / SAFETY } else { short };
+                    self.short = again.max(outcome.growth * remaining.min(long) / LONGER);
                 }
             }
         }

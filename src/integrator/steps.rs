@@ -4,7 +4,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::{HALVINGS, MOST_SHRINK, SAFETY, STEP_GROWTH};
+use crate::integrator::constants::{HALVINGS, LEAST_SHRINK, MOST_SHRINK, SAFETY, STEP_GROWTH};
 use crate::integrator::energy::conservation;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::rest::rests_until;
@@ -78,7 +78,9 @@ impl Stepper<'_> {
             Proposal::Short(length) => self.advance_with::<SHORT>(length)?,
             Proposal::Long(length) => self.advance_with::<LONG>(length)?,
         };
-        self.state.lengths.keep(proposal, &outcome, closed, remaining);
+        let situation = (self.progress.driven, self.state.last_closing().is_some());
+        let lengths = &mut self.state.lengths;
+        lengths.keep(proposal, &outcome, closed, remaining, situation);
         Ok(())
     }
 
@@ -116,7 +118,13 @@ impl Stepper<'_> {
             if is_least {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            return Ok(self.reject(target.length * shrinkage::<S>(ratio)));
+            let shrink = if self.changes_now() {
+                // Where the force bends the error is of order one.
+                (SAFETY / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
+            } else {
+                shrinkage::<S>(ratio)
+            };
+            return Ok(self.reject(target.length * shrink));
         }
         // The energy may reveal an error that the estimate misses.
         let watches = self.progress.conserves && closed;
@@ -125,7 +133,7 @@ impl Stepper<'_> {
         }
         // From the error of the whole step, also if an event shortens it.
         let own_growth = growth::<S>(ratio);
-        let (leaving, most) = self.leaving_change(target.length);
+        let (leaving, most) = self.leaving_kink(target.length);
         let growth = if self.progress.before_event { own_growth.min(1.0) } else { own_growth * leaving };
         let cut = match self.find_end(trial, target) {
             Ok(cut) => cut,
@@ -134,7 +142,7 @@ impl Stepper<'_> {
         if let Some(cut) = cut {
             return self.end_at(&cut, trial, target, (growth, most), requested);
         }
-        let is_first = self.state.slip.last_change == Some(self.state.time);
+        let is_first = self.changes_now();
         if !self.commit(trial, target, self.is_shortest(target))? {
             return Ok(self.reject(MOST_SHRINK * target.length));
         }
@@ -153,17 +161,20 @@ impl Stepper<'_> {
         Ok(StepOutcome::accepted(target.length, requested, (growth, most)))
     }
 
-    /// Factor by which the next step may be longer for its distance from where slip last began or ended alone: with a damper the force
-    /// there is smooth in the logarithm of the time since. And the most that it may grow: the first step after such a change is far
-    /// shorter than those that follow. Without a damper the spring rings on.
-    fn leaving_change(&self, length: f64) -> (f64, f64) {
-        let State { time, last_kink, slip, .. } = *self.state;
-        if self.model.law.damping == 0.0 || slip.last_change != Some(last_kink) {
-            return (1.0, STEP_GROWTH);
-        }
-        let most = STEP_GROWTH * STEP_GROWTH;
+    /// Factor by which the next step may be longer for its distance from the last closing, or from where slip last began or ended, alone:
+    /// with a damper the force there is smooth in the logarithm of the time since. Without one the spring rings on after slip. And the
+    /// most that it may grow: the first step after such a change is far shorter than those that follow.
+    fn leaving_kink(&self, length: f64) -> (f64, f64) {
+        let State { time, last_kink, kink_is_closing, slip, .. } = *self.state;
         let elapsed = time - last_kink;
-        let factor = if elapsed > 0.0 { (SAFETY * (1.0 + length / elapsed)).max(1.0) } else { most };
-        (factor, most)
+        let slides = self.model.law.damping > 0.0 && slip.last_change == Some(last_kink);
+        let most = if slides { STEP_GROWTH * STEP_GROWTH } else { STEP_GROWTH };
+        if slides && elapsed == 0.0 {
+            (most, most)
+        } else if (slides || kink_is_closing) && elapsed > 0.0 {
+            ((SAFETY * (1.0 + length / elapsed)).max(1.0), most)
+        } else {
+            (1.0, most)
+        }
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
+use crate::integrator::constants::BRIEF;
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::Locator;
 use crate::link::MAX_LINKS;
@@ -46,6 +47,8 @@ impl<const S: usize> Locator<'_, S> {
         if !is_accurate && whole.collocation.variable == Variable::Root {
             return false;
         }
+        let is_brief = whole.length
+            <= BRIEF * whole.model.scene.solver.effective_tolerance() * whole.model.scene.chatter.minimum_duration;
         let unsure = inaccuracy * allowed;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
             return false;
@@ -56,7 +59,7 @@ impl<const S: usize> Locator<'_, S> {
             let now = (y, value(y));
             let below = if is_end { end } else { now.1 < 0.0 };
             if below != interrupted {
-                let place = if is_accurate {
+                let place = if is_accurate || is_brief {
                     // Only rounding leaves both on one side.
                     let course = |y: f64| {
                         let (force, slope) = value_and_slope(&polynomial, y);
