@@ -159,6 +159,7 @@ fn blow(scene: &Scene, bending_force: f64, power: &Law) -> Blow {
         stiffness_damping: scene.beam.stiffness_damping,
         contact_stiffness: power.tangent_stiffness(force),
         contact_damping: power.damping,
+        bare: scene.tip.mass == 0.0,
         steep: scene.rubs() || power.exponent < 1.4,
     }
 }

@@ -108,6 +108,34 @@ impl State {
         }
     }
 
+    /// Takes over another state of a model with so many modes and links.
+    pub(crate) fn copy(&mut self, other: &Self, modes: usize, links: usize) {
+        let own = self.modes.iter_mut().zip(&other.modes).take(modes);
+        own.for_each(|(own, other)| *own = *other);
+        let own = self.links.iter_mut().zip(&other.links).take(links);
+        own.for_each(|(own, other)| *own = *other);
+        Self {
+            modes: _,
+            links: _,
+            time: self.time,
+            with_contact: self.with_contact,
+            displacements: self.displacements,
+            velocities: self.velocities,
+            coil: self.coil,
+            circuits: self.circuits,
+            slip: self.slip,
+            last_kink: self.last_kink,
+            kink_is_closing: self.kink_is_closing,
+            lengths: self.lengths,
+            energy_surplus: self.energy_surplus,
+            energy_balance: self.energy_balance,
+            force_error: self.force_error,
+            steps: self.steps,
+            rejected_steps: self.rejected_steps,
+            iterations: self.iterations,
+        } = *other;
+    }
+
     pub(crate) fn touches_now(&self) -> bool {
         self.kink_is_closing && self.last_kink == self.time
     }

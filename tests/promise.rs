@@ -264,12 +264,16 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
 }
 
 /// A jump of the velocity of the fixed contact makes a peak of force that is over within picoseconds, faster than any mode vibrates: the
-/// overdamped modes answer it with their fast roots, and with too few of them the peak is wrong.
+/// overdamped modes answer it with their fast roots, and with too few of them the peak is wrong; the more so at a tip without rivet.
 #[test]
 fn what_modes_left_out_do_to_a_jump_of_a_velocity_is_told() {
-    for (number, draw) in [(40_411, kinds::friction as Draw), (500_606, kinds::rough)] {
-        let judged = judge(number, draw, 0.0);
-        assert!(judged.error <= judged.tolerance || judged.estimate > judged.tolerance, "{judged:?}");
+    let relays: [(Draw, &[u64]); 2] =
+        [(kinds::friction, &[40_074, 40_411, 920_556, 920_593]), (kinds::rough, &[500_606, 920_207])];
+    for (draw, numbers) in relays {
+        for &number in numbers {
+            let judged = judge(number, draw, 0.0);
+            assert!(judged.error <= judged.tolerance || judged.estimate > judged.tolerance, "{judged:?}");
+        }
     }
 }
 

@@ -53,6 +53,8 @@ pub struct Blow {
     pub contact_stiffness: f64,
     /// beta_c of the contact, s.
     pub contact_damping: f64,
+    /// Whether the tip of the spring has no rivet.
+    pub bare: bool,
     /// Whether the load is less smooth than in an impact of Hertz: by friction, or by a contact that is stiffer at first touch.
     pub steep: bool,
 }

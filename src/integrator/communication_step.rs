@@ -55,7 +55,7 @@ pub(crate) fn advance(
 /// A [`StepError`]; the motion is then undefined.
 fn step_freely(model: &Model, motion: &mut Motion, workspace: &mut Workspace, until: f64) -> Result<(), StepError> {
     let Motion { start, end, dense, drive, .. } = motion;
-    *start = *end;
+    start.copy(end, model.modes.len(), model.links.len());
     let size = end.lengths.own();
     check_spacing(model, end.time, size)?;
     if !exact_step::step_ahead(model, end, workspace, drive, (until, &mut *dense)) {
@@ -114,13 +114,13 @@ pub fn step(
             motion.add_dense(extremes, model, since, until);
         }
     } else if steady {
-        *workspace.former = *motion;
+        workspace.former.copy(model, motion);
         step_ahead(model, motion, workspace, until, extremes.as_mut()).inspect_err(|_| {
-            *motion = *workspace.former;
+            motion.copy(model, &workspace.former);
             workspace.events.forget_after(motion.end.time);
         })?;
     } else {
-        *workspace.former = *motion;
+        workspace.former.copy(model, motion);
         let ahead = motion.time < motion.end.time;
         let gone_back = if ahead { go_back(model, motion, workspace) } else { Ok(()) };
         // One after a time without changes is none that recurs.
@@ -129,7 +129,7 @@ pub fn step(
         let done =
             gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, grid, driven, extremes.as_mut()));
         done.inspect_err(|_| {
-            *motion = *workspace.former;
+            motion.copy(model, &workspace.former);
             workspace.events.replace_after(since, motion.events_ahead());
         })?;
         (motion.end.displacements, motion.end.time) = (displacements, until);

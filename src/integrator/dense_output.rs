@@ -40,6 +40,13 @@ pub(crate) struct DenseSlip {
 }
 
 impl DenseOutput {
+    /// Takes over another with so many links.
+    pub(crate) fn copy(&mut self, other: &Self, links: usize) {
+        let own = self.links.iter_mut().zip(&other.links).take(links);
+        own.for_each(|(own, other)| *own = *other);
+        self.slip = other.slip;
+    }
+
     /// Whether a simulation can reach these numbers.
     pub(crate) fn is_sound(&self) -> bool {
         let Self { links, slip } = self;

@@ -126,6 +126,25 @@ impl Motion {
         Box::new(Self::new(model.initial_state(time)))
     }
 
+    /// Takes over another of this model: what it has of modes and links, as a whole motion takes longer than a step.
+    pub(crate) fn copy(&mut self, model: &Model, other: &Self) {
+        let (modes, links) = (model.modes.len(), model.links.len());
+        self.start.copy(&other.start, modes, links);
+        self.end.copy(&other.end, modes, links);
+        self.dense.copy(&other.dense, links);
+        Self {
+            start: _,
+            end: _,
+            dense: _,
+            time: self.time,
+            current: self.current,
+            current_rate: self.current_rate,
+            size: self.size,
+            extremes: self.extremes,
+            drive: self.drive,
+        } = *other;
+    }
+
     /// The last integrated state at or before the communication point.
     pub fn state(&self) -> &State {
         if self.end.time <= self.time { &self.end } else { &self.start }
