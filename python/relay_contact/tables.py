@@ -136,6 +136,23 @@ class Table:
         self.refuse(name, ~np.isfinite(values), "a finite number")
         return values
 
+    def refuse_two_signs(self) -> None:
+        """Raise an error for the first cell with a comma where others have a decimal point, or the other way round."""
+        if self.separator == "," or not all(any(sign in row for row in self.rows.values()) for sign in ",."):
+            return
+        first = ""
+        for line, row in self.rows.items():
+            cells = split(row, self.separator)
+            for name, place in self.places.items():
+                signs = {",", "."}.intersection(cells[place])
+                if len(signs) == 1:
+                    # With both it is no number.
+                    (sign,) = signs
+                    first = first or sign
+                    if sign != first:
+                        text = f"column {name}: {cells[place]}: not allowed, allowed is one decimal sign, here {first}"
+                        raise self.wrong(text, line)
+
     def refuse(self, name: str, bad: NDArray[np.bool_], allowed: str) -> None:
         """Raise an error for the first row of a column that is bad."""
         if bad.any():
@@ -190,6 +207,7 @@ def read(path: Path, known: Units) -> Table:
                 more = "; decimal commas need semicolons or tabs between columns" if filled > len(names) else ""
                 text = f"{filled} values: not allowed, allowed is {len(names)}, one in each column{more}"
                 raise table.wrong(text, number)
+    table.refuse_two_signs()
     return table
 
 

@@ -213,3 +213,11 @@ def test_errors_in_an_input_table_have_line_and_column(tmp_path: Path, text: str
 def test_all_inputs_of_the_component_may_be_in_a_table() -> None:
     inputs = {name for name, variable in COMPONENT.variables.items() if variable.causality == "input"}
     assert set(INPUTS) == inputs | {"time"}
+
+
+@pytest.mark.parametrize("rows", ["0.0010\t3,801\n", "0,1\t2\n0.2\t3\n"])
+def test_commas_between_thousands_are_not_decimal_ones(tmp_path: Path, rows: str) -> None:
+    path = tmp_path / "export.txt"
+    path.write_text("travel [mm]\tforce [cN]\n" + rows, encoding="utf-8")
+    with pytest.raises(RelayContactError, match="allowed is one decimal sign"):
+        read_measurement(path, COMPONENT, ["a"])
