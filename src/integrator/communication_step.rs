@@ -120,7 +120,9 @@ pub fn step(
             workspace.events.forget_after(motion.end.time);
         })?;
     } else {
-        workspace.former.copy(model, motion);
+        // It is all that changes until the step is done.
+        let (modes, links) = (model.modes.len(), model.links.len());
+        workspace.former.end.copy(&motion.end, modes, links);
         let ahead = motion.time < motion.end.time;
         let gone_back = if ahead { go_back(model, motion, workspace) } else { Ok(()) };
         // One after a time without changes is none that recurs.
@@ -129,7 +131,7 @@ pub fn step(
         let done =
             gone_back.and_then(|()| advance(model, &mut motion.end, workspace, drive, grid, driven, extremes.as_mut()));
         done.inspect_err(|_| {
-            motion.copy(model, &workspace.former);
+            motion.end.copy(&workspace.former.end, modes, links);
             workspace.events.replace_after(since, motion.events_ahead());
         })?;
         (motion.end.displacements, motion.end.time) = (displacements, until);
