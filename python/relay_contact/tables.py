@@ -140,18 +140,17 @@ class Table:
         """Raise an error for the first cell with a comma where others have a decimal point, or the other way round."""
         if self.separator == "," or not all(any(sign in row for row in self.rows.values()) for sign in ",."):
             return
-        first = ""
-        for line, row in self.rows.items():
-            cells = split(row, self.separator)
-            for name, place in self.places.items():
-                signs = {",", "."}.intersection(cells[place])
-                if len(signs) == 1:
-                    # With both it is no number.
-                    (sign,) = signs
-                    first = first or sign
-                    if sign != first:
-                        text = f"column {name}: {cells[place]}: not allowed, allowed is one decimal sign, here {first}"
-                        raise self.wrong(text, line)
+        seen: dict[str, tuple[int, int, str, str]] = {}
+        for name, place in self.places.items():
+            for line, cell in zip(self.rows, self.cells(name), strict=True):
+                # With both it is no number.
+                if ("," in cell) != ("." in cell):
+                    seen.setdefault("," if "," in cell else ".", (line, place, name, cell))
+        if len(seen) > 1:
+            first, other = sorted(seen, key=lambda sign: seen[sign])
+            line, _, name, cell = seen[other]
+            text = f"column {name}: {cell}: not allowed, allowed is one decimal sign, here {first}"
+            raise self.wrong(text, line)
 
     def refuse(self, name: str, bad: NDArray[np.bool_], allowed: str) -> None:
         """Raise an error for the first row of a column that is bad."""
