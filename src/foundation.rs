@@ -141,14 +141,14 @@ fn counts(
     (own, [parallel, second], bending_force): (&Blow, [Option<Law>; 2], f64),
 ) -> Counts {
     let pusher = scene.pushed_at().map(|_| Law::linear(scene.pusher.stiffness, scene.pusher.damping));
-    let blow = |power: Law| blow(scene, bending_force, &power);
-    let others = [parallel, second, pusher].map(|power| power.map_or(*own, blow));
+    let blow = |law: Law| blow(scene, bending_force, &law);
+    let others = [parallel, second, pusher].map(|law| law.map_or(*own, blow));
     let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
     springs.counts(own, &others, scene.solver.effective_tolerance(), asked)
 }
 
 /// A blow as the scene may have it.
-fn blow(scene: &Scene, bending_force: f64, power: &Law) -> Blow {
+fn blow(scene: &Scene, bending_force: f64, law: &Law) -> Blow {
     // A blow fifty times the force of the bent spring; with Hertz the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force,
@@ -157,10 +157,10 @@ fn blow(scene: &Scene, bending_force: f64, power: &Law) -> Blow {
     Blow {
         mass_damping: scene.beam.mass_damping,
         stiffness_damping: scene.beam.stiffness_damping,
-        contact_stiffness: power.tangent_stiffness(force),
-        contact_damping: power.damping,
+        contact_stiffness: law.tangent_stiffness(force),
+        contact_damping: law.damping,
         bare: scene.tip.mass == 0.0,
-        steep: scene.rubs() || power.exponent < 1.4,
+        steep: scene.rubs() || law.exponent < 1.4,
     }
 }
 

@@ -33,7 +33,7 @@ const DECAY: f64 = 0.05;
 /// random relays with 8 to 44 modes it is smaller.
 const OF_BOUND: f64 = 0.25;
 
-/// Factor on it at a tip without rivet, 1. Such a tip follows a jump of a velocity at once: the coefficients of the motion fall as a power
+/// Factor on it where the moving spring has no rivet, 1. Such a tip follows a jump of a velocity at once: the coefficients of the motion fall as a power
 /// of their number, and the last ones show less of what is missing. Pinned: without it `tests/promise.rs` finds relays above their
 /// tolerance in silence.
 const BARE: f64 = 4.0;
