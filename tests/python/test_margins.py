@@ -12,11 +12,13 @@ from scipy.stats import binom
 from component import COMPONENT, ROOT
 from qualified import CONTACTS, described, judged, placed
 from relay_contact import RelayContactWarning, Values, run
+from relay_contact.component import Array
 from relay_contact.figures import three
+from relay_contact.many import side_by_side
 from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, judgement, qualify
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
-from relay_contact.qualification.excitation import Random, Shock, Sine
+from relay_contact.qualification.excitation import History, Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.judgement import transient_level
 from relay_contact.qualification.page import inputs, warned, write
@@ -26,6 +28,7 @@ from relay_contact.qualification.response import respond
 from relay_contact.qualification.results import Chance
 from relay_contact.qualification.trials import Specimen, pieces, steady
 from relay_contact.qualification.words import failures, passes_text, tighten
+from relay_contact.records import Record
 
 READ: Any = "read in the standard"
 SINE = Sine("sine", "", READ, 30.0, 4.95e-3, (10.0, 3000.0), 1200.0)
@@ -123,6 +126,34 @@ def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:
     exact, wrong = (judgement.ends(positions.Drawn(margins, error, 0), 3.0, 1.0) for error in (0.0, 0.03))
     assert exact == pytest.approx((2.05, 3.95), rel=1e-3)
     assert wrong == pytest.approx((exact[0] * 0.97, exact[1] * 1.03))
+
+
+@pytest.mark.parametrize("seed", [1, 5, 6, 7, 8])
+def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) -> None:
+    """With a tenth of the damping, so that its dips take turns: the surface alone is up to 5 % off at the lower end."""
+    relay = drawn(seed)
+    (values,) = relay.positions.values()
+    damping = 0.1 * float(values["beam.stiffnessDamping"])
+    relay = described({**values, "beam.stiffnessDamping": damping}, relay.uncertainty)
+    time, generator = np.arange(0.0, 0.3, 5e-5), np.random.default_rng(seed)
+    spectrum, frequencies = np.fft.rfft(generator.standard_normal(len(time))), np.fft.rfftfreq(len(time), 5e-5)
+    noise = np.fft.irfft(np.where((frequencies > 200) & (frequencies < 3000), spectrum, 0), len(time))
+    record = Record(Path("record.csv"), "a", time, noise / noise.std() * 300)
+    test = History("record", "", READ, record=record, both=False, digest="")
+    position = placed(relay, test)
+    surface = position.surfaces[test.name]
+    scores = np.random.default_rng(7).standard_normal((1000, len(relay.uncertainty)))
+
+    def margin(row: Array) -> float:
+        return position.linear(position.responses(position.drawn(row))[position.part], test)
+
+    exact = np.array(side_by_side(margin, list(scores)))
+    of_surface = positions.Drawn(np.exp(surface(scores)), surface.error, 0)
+    ends = [judgement.ends(each, float(np.median(exact)), 1.0) for each in (of_surface, positions.Drawn(exact, 0.0, 0))]
+    (low, high), (least, most) = ends
+    # To the error that the documents state.
+    assert low < 1.01 * least
+    assert high > 0.99 * most
 
 
 def test_a_resonance_beside_the_range_makes_the_interval_unsymmetrical(tmp_path: Path) -> None:
