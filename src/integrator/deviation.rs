@@ -3,8 +3,10 @@
 //! In a closed contact errors die out with the vibrations. In one that opens, each closing turns an error of the motion
 //! into another blow, and errors may grow from one to the next. So the lowest modes of a deviation are carried along, with
 //! each law at work linearised about the motion and its force linear in time over each step (trapezoidal rule). Its direction
-//! soon is that which grows most; each step adds its error to the size.
+//! soon is that which grows most. Its size is that of the errors: each step adds what slow modes feel of its own, each opening and
+//! closing what a wrong force or a wrong instant leaves in the motion, which would die out in a contact that stayed closed.
 
+use std::f64::consts::SQRT_2;
 use std::mem;
 
 use crate::force_error::{Deviation, ForceError, Lanes, MODES, Slowest};
@@ -40,6 +42,13 @@ impl ForceError {
             *v += shape / by_impulse;
         }
         self.size *= self.normalise(slowest);
+    }
+
+    /// A contact of this stiffness (N/m) opens or closes: the motion keeps the energy of the largest error of its force, and as much
+    /// in the velocity.
+    pub(crate) fn keep(&mut self, stiffness: f64, force_scale: f64) {
+        let error = self.largest * force_scale.max(self.greatest);
+        self.size = (self.size + SQRT_2 * error / stiffness.sqrt()).min(f64::MAX);
     }
 
     /// A step was wrong by an impulse (N s) on a contact at this port; none is known where it is not a number, as in a step with
