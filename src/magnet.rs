@@ -27,6 +27,11 @@ impl Magnet {
         (force, -2.0 * force / (self.constant + gap))
     }
 
+    /// Gap (m), far below that of a quarter, that changes the force by this (N).
+    pub fn gap_of(&self, change: f64, current: f64) -> f64 {
+        0.5 * self.constant * change / (self.hold * current * current)
+    }
+
     /// Work that opening a gap (m) from none takes at a relative current, J.
     pub fn energy(&self, gap: f64, current: f64) -> f64 {
         let open = gap.max(0.0);

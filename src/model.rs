@@ -251,6 +251,11 @@ impl Model {
         }
     }
 
+    /// Whether there is an armature on its core.
+    pub(crate) fn is_on_core(&self, state: &State) -> bool {
+        self.roles.core.and_then(|core| state.links.get(core)).is_some_and(|core| core.closed)
+    }
+
     /// At rest in the preload.
     pub fn initial_state(&self, time: f64) -> State {
         let mut links = [LinkState::default(); MAX_LINKS];

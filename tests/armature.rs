@@ -108,6 +108,49 @@ fn a_slow_acceleration_releases_it_at_its_holding_force_over_its_mass() {
     assert!((release - 0.05).abs() < 5e-5, "{release}");
 }
 
+/// A stop that damps lets go while it is still indented; where the indentation ends, in flight, so does the constant force of the magnet.
+/// The same motion by the classical Runge-Kutta method in steps of 1 ns.
+#[test]
+fn the_force_of_the_magnet_bends_where_a_gap_opens() {
+    let mut scene = alone();
+    scene.armature.gap_constant = 2e-5;
+    scene.armature.damping = 0.0;
+    // That of critical damping.
+    scene.armature.stop_restitution = (-2.0_f64).exp();
+    let given = scene.armature;
+    let damping = 2.0 * (given.stop_stiffness * given.mass).sqrt();
+    let start = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
+    let pull = 1.5 * start.model().preload.armature.core_force;
+    let acceleration = |[place, velocity]: [f64; 2]| {
+        let gap = given.core_position - place;
+        let drawn = given.hold_force / (1.0 + gap.max(0.0) / given.gap_constant).powi(2);
+        let returned = given.return_force + given.stiffness * (place - given.rest_position);
+        let stop = if gap < 0.0 { (damping * velocity - given.stop_stiffness * gap).max(0.0) } else { 0.0 };
+        (drawn - returned - stop - pull) / given.mass
+    };
+    let (size, dt) = (1e-4, 1e-9);
+    let mut at = [start.real(RealOutput::ArmatureDisplacement), 0.0];
+    for _ in 0..100_000 {
+        let moved = |at: [f64; 2], rate: [f64; 2], h: f64| [at[0] + h * rate[0], at[1] + h * rate[1]];
+        let rate = |at: [f64; 2]| [at[1], acceleration(at)];
+        let a = rate(at);
+        let b = rate(moved(at, a, 0.5 * dt));
+        let c = rate(moved(at, b, 0.5 * dt));
+        let d = rate(moved(at, c, dt));
+        at = [0, 1].map(|i| at[i] + dt / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+    }
+    let inputs = Inputs { base_acceleration: -pull / given.mass, ..coil(1.0) };
+    for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
+        scene.solver.tolerance = tolerance;
+        let mut simulation = Simulation::new(&scene, &coil(1.0), 0.0).unwrap();
+        simulation.step(&inputs, 0.0, size).unwrap();
+        let velocity = simulation.real(RealOutput::ArmatureVelocity);
+        // A bend of the force inside a step of that method costs it some 1e-12; a bend inside one of the component's cost 1e-6.
+        close(velocity, at[1], 1e-11);
+        assert!(simulation.real(RealOutput::ArmatureGap) > 2e-6);
+    }
+}
+
 /// The whole: contact, pusher and core under a shock; held, and released.
 #[test]
 fn a_released_armature_opens_the_contact() {

@@ -9,11 +9,11 @@
 //! method.
 
 use crate::error::{StepError, StepErrorCause};
-use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::events::Event;
 use crate::integrator::grid::Target;
+use crate::integrator::rounding::motion_rounding;
 use crate::integrator::step_length::StepOutcome;
 use crate::integrator::stepper::Stepper;
 use crate::integrator::workspace::{Room, Rooms, work};

@@ -222,6 +222,7 @@ pub mod leap;
 pub mod motion;
 pub mod recorder;
 pub mod rest;
+pub mod rounding;
 pub mod step_end;
 pub mod step_length;
 pub mod stepper;

@@ -48,9 +48,8 @@ impl Stepper<'_> {
         let mut closes: Option<Cut> = None;
         for ((index, (link, at)), suspect) in links().zip(&mut suspects) {
             if link.contact().is_none() {
-                continue;
-            }
-            if at.closed {
+                closes = earlier(closes, locator.gap(index));
+            } else if at.closed {
                 let held = just_closed(at.last_closing) || sticks && index == CONTACT;
                 *suspect = if held { None } else { locator.first_open(index) };
             } else if let Some(cut) = locator.closing(index) {

@@ -225,7 +225,7 @@ impl<'a> Stepper<'a> {
                 transition::switch(self.model, self.state, index, &mut self.workspace.events);
             }
             Event::Slides(phase) => transition::slide(self.model, self.state, phase),
-            Event::Read | Event::Dips => {}
+            Event::Read | Event::Bends => {}
         }
     }
 

@@ -8,12 +8,13 @@ use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknown}
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, Trial};
-use crate::integrator::constants::{FORCE_ROUNDING, KINKED, MOTION_ROUNDING};
-use crate::link::{Link, LinkLaw, MAX_LINKS};
+use crate::integrator::constants::{FORCE_ROUNDING, KINKED};
+use crate::integrator::rounding::magnitude;
+use crate::link::{LinkLaw, MAX_LINKS};
 use crate::math::nodal::{Nodal, dot, end, greatest};
 use crate::math::simd::Arithmetic;
 use crate::model::Model;
-use crate::state::{LinkState, State};
+use crate::state::State;
 
 /// What the polynomials of the forces miss at the start of a step, link by link, N.
 #[derive(Clone, Copy, Debug, Default)]
@@ -221,26 +222,6 @@ pub(crate) fn of_rounding<const S: usize>(model: &Model, state: &State, trial: &
         (stiffness.abs() * displacement + damping * velocity) / reaction
     });
     rounding * of_links.sum::<f64>()
-}
-
-/// Rounding of the approach (m) of a link and of its rate (m/s).
-pub(crate) fn motion_rounding(model: &Model, link: (&Link, &LinkState), state: &State) -> (f64, f64) {
-    let (displacement, velocity) = magnitude(model, link, state);
-    (MOTION_ROUNDING * displacement, MOTION_ROUNDING * velocity)
-}
-
-/// Magnitude of all that the approach (m) of a link and its rate (m/s) are made of. Of the modes: after an impact their velocities are
-/// large and their sum at the tip is small. Of the sum itself: a contact that an input has moved a long way closes with an indentation
-/// that is the small difference of that way and the gap.
-fn magnitude(model: &Model, (link, at): (&Link, &LinkState), state: &State) -> (f64, f64) {
-    let (mut displacement, mut velocity) = (at.approach.abs(), at.rate.abs());
-    if let Some(port) = model.ports.get(link.port) {
-        for (factor, at) in port.shape.iter().zip(&state.modes).take(port.modes.end) {
-            displacement += (factor * at.q).abs();
-            velocity += (factor * at.v).abs();
-        }
-    }
-    (displacement, velocity)
 }
 
 /// Error of slow modes, N, that a defect (N) of the force at the start of a step of `length` seconds makes near a kink, where

@@ -19,6 +19,7 @@ use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::{ITERATIONS, MOTION_ROUNDING, STALE};
+use crate::integrator::rounding::motion_rounding;
 use crate::link::{CONTACT, LinkLaw, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, end, greatest, scaled, unit};
 use crate::math::simd::{Arithmetic, Separate};
@@ -49,11 +50,14 @@ impl Unknowns {
     pub(crate) fn of(model: &Model, state: &State) -> Self {
         let mut unknowns = Self::default();
         let friction = model.friction();
-        // On its core the armature has no gap, and the magnet a constant force.
-        let seated = model.roles.core.is_some_and(|core| state.links.get(core).is_some_and(|at| at.closed));
         for (index, (link, at)) in model.links.iter().zip(&state.links).enumerate() {
             let Some((rubbing, friction)) = friction.filter(|_| index == CONTACT) else {
-                if at.closed && link.contact().is_some() || matches!(link.law, LinkLaw::Magnet(_)) && !seated {
+                let is_unknown = match &link.law {
+                    LinkLaw::Contact(_) => at.closed,
+                    LinkLaw::Magnet(_) => !model.is_on_core(state) && indented(model, state, index).is_none(),
+                    LinkLaw::Friction(_) | LinkLaw::Gauge => false,
+                };
+                if is_unknown {
                     unknowns.push(index, None);
                 }
                 continue;
@@ -89,6 +93,15 @@ impl Unknowns {
     pub(crate) fn get(&self, a: usize) -> &Unknown {
         &self.list[a]
     }
+}
+
+/// The gap (m) of a magnet that counts as none, if its own is less: the armature is indented, and the force constant.
+pub(crate) fn indented(model: &Model, state: &State, index: usize) -> Option<f64> {
+    let (link, at) = model.links.get(index).zip(state.links.get(index))?;
+    let LinkLaw::Magnet(magnet) = &link.law else { return None };
+    let (rounding, _) = motion_rounding(model, (link, at), state);
+    let unsure = magnet.gap_of(model.tolerance.at_event, state.coil).max(rounding);
+    (link.approach + at.approach < -2.0 * unsure).then_some(unsure)
 }
 
 /// Responses between unknown links, where they are not simply that of a port to itself.

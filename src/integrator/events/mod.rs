@@ -4,6 +4,7 @@
 
 pub mod closing;
 pub mod cubic;
+pub mod gap;
 pub mod interruption;
 pub mod log;
 pub mod opening;
@@ -12,9 +13,9 @@ pub mod swings;
 
 use crate::contact::friction::Phase;
 use crate::contact::law::Law;
-use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::ITERATIONS;
+use crate::integrator::rounding::motion_rounding;
 use crate::integrator::workspace::{Search, work};
 use crate::link::Link;
 use crate::math::prediction::value_at;
@@ -27,8 +28,8 @@ use crate::state::{LinkState, State};
 pub(crate) enum Event {
     /// The communication step ends, or the step is read there.
     Read,
-    /// The force of a contact dips to where it is lowest, and the contact stays closed.
-    Dips,
+    /// A force is lowest there, of a contact that stays closed, or begins to bend, and the next step starts there.
+    Bends,
     /// A contact opens or closes.
     Switches(usize),
     /// The first contact begins or ceases to slip, and goes on like this.

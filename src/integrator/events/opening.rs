@@ -21,7 +21,7 @@ impl<const S: usize> Locator<'_, S> {
         (opens || latest < length).then_some(Cut {
             at: end.at,
             time: state.time + end.at,
-            event: if opens { Event::Switches(index) } else { Event::Dips },
+            event: if opens { Event::Switches(index) } else { Event::Bends },
         })
     }
 

@@ -6,13 +6,13 @@
 
 use crate::contact::friction::{Friction, Phase};
 use crate::contact::law::Law;
-use crate::integrator::collocation::error::motion_rounding;
 use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::slip::is_long;
 use crate::integrator::constants::MOTION_ROUNDING;
 use crate::integrator::course::turning_points;
 use crate::integrator::events::{Cut, Event, Locator, engagement_rounding};
+use crate::integrator::rounding::motion_rounding;
 use crate::link::{CONTACT, Link};
 use crate::math::nodal::{dot, scaled};
 use crate::math::prediction::{value_and_slope, value_at};
@@ -106,7 +106,7 @@ impl<'a, const S: usize> Locator<'a, S> {
             at = end.at;
             // Else it changes after the trial: the next step starts here.
             if end.at >= latest && beyond(self, &end) < -allowed {
-                event = Event::Dips;
+                event = Event::Bends;
             }
         }
         Cut { at, time: self.whole.state.time + at, event }
