@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from report import accuracy, callgrind, effects, hard_cases, importers, opening, plots, promise, validation
+from report import accuracy, callgrind, effects, hard_cases, importers, opening, promise, validation
 from report.figure import Figure
 from report.files import DOCS, PICTURES
 from report.page import Section, folder, sections, whole, write
@@ -23,7 +23,7 @@ def section(template: str, numbers: dict[str, object], figures: list[Figure] | N
 def report(quick: bool) -> Path:
     """Run what the report shows; write the page, and, unless quick, docs/validation.md and the pictures of docs/."""
     publication = Publication(quick)
-    drawn = plots.figures(publication)
+    drawn = validation.figures(publication)
     text, leads = validation.page(publication, drawn)
     maps, numbers = opening.values(quick)
     (folder(quick) if quick else DOCS).joinpath(VALIDATION).write_text(text, encoding="utf-8")

@@ -39,7 +39,7 @@ Style = Literal["line", "dashed", "points", "marked"]
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve, or points alone; those that belong together have the same colour."""
+    """A curve, or points alone; those that belong together have the same colour, and need one name."""
 
     name: str
     x: ArrayLike
@@ -71,10 +71,10 @@ class Figure:
             for letter, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
                 if letter in self.log:
                     logarithmic(axes, axis, letter)
-            if len(self.curves) > 1:
-                longest = max(len(curve.name) for curve in self.curves)
-                columns = max(1, int(11 * width / (longest + 9)))
-                drawing.set_figheight(3.8 + 0.21 * -(-len(self.curves) // columns))
+            names = [curve.name for curve in self.curves if curve.name]
+            if len(names) > 1:
+                columns = max(1, int(11 * width / (max(map(len, names)) + 9)))
+                drawing.set_figheight(3.8 + 0.21 * -(-len(names) // columns))
                 drawing.legend(loc="outside lower left", ncols=columns, handlelength=3.4)
         return drawing
 

@@ -10,7 +10,6 @@ stiffness follows from the published static force.
 - Frequency domain: the same of a vibration so weak that the contact is linear, with mass damping alone.
 """
 
-import csv
 import math
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
@@ -18,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
@@ -138,19 +138,8 @@ class Fit:
     """Its parameters, in their units."""
     rms: float
     """Of the logarithms of what the component has over what is published."""
-    covariance: Array
-    """Of the logarithms of the parameters."""
-    freedom: int
-
-    def half(self, deviation: Array) -> Array:
-        """Return half of a 95 % interval by its standard deviation, which the scatter of the residuals gives."""
-        return np.asarray(stdtrit(self.freedom, PROBABLE) * deviation)
-
-    @property
-    def intervals(self) -> tuple[Array, Array]:
-        """The ends of the 95 % intervals of the parameters."""
-        half = self.half(np.sqrt(np.diag(self.covariance)))
-        return self.free * np.exp(-half), self.free * np.exp(half)
+    half: Array
+    """Of the 95 % intervals of the logarithms of the parameters, by the scatter of the residuals."""
 
 
 def fit(law: Law, start: tuple[float, ...]) -> Fit:
@@ -169,8 +158,8 @@ def fit(law: Law, start: tuple[float, ...]) -> Fit:
     found = least_squares(residuals, np.log(start), jacobian, bounds, xtol=1e-6, ftol=1e-9)
     left, slopes = found.fun, found.jac
     freedom = len(left) - len(start)
-    covariance = np.linalg.inv(slopes.T @ slopes) * (left @ left) / freedom
-    return Fit(law, np.exp(found.x), float(np.sqrt(np.mean(left**2))), covariance, freedom)
+    deviation = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)) * (left @ left) / freedom)
+    return Fit(law, np.exp(found.x), float(np.sqrt(np.mean(left**2))), stdtrit(freedom, PROBABLE) * deviation)
 
 
 def best() -> list[Fit]:
@@ -185,27 +174,25 @@ def best() -> list[Fit]:
 
 def write(fits: list[Fit], asked: list[Number], values: Array) -> None:
     """Write the tables of what the component has of each number, and of the parameters."""
-    with TABLE.open("w", newline="", encoding="utf-8") as file:
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["quantity", "location", "unit", "published", "fitted", *(each.law.name for each in fits)])
-        for each, own in zip(asked, values.T, strict=True):
-            shown = [f"{value:.5g}" for value in own]
-            rows.writerow([each.quantity, each.location, each.unit, f"{each.published:g}", each.fitted, *shown])
-    with PARAMETERS.open("w", newline="", encoding="utf-8") as file:
-        rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["contact", "parameter", "unit", "value", "low", "high"])
-        for found in fits:
-            rows.writerow([found.law.name, "rms", "%", f"{100 * found.rms:.4g}", "", ""])
-            for (name, unit, _), *ends in zip(found.law.parameters, found.free, *found.intervals, strict=True):
-                rows.writerow([found.law.name, name, unit, *(f"{value:.4g}" for value in ends)])
+    numbers = [[each.quantity, each.location, each.unit, f"{each.published:g}", each.fitted] for each in asked]
+    head = ["quantity", "location", "unit", "published", "fitted"]
+    names = [each.law.name for each in fits]
+    table = pd.DataFrame(numbers, columns=head).join(pd.DataFrame(values.T, columns=names).map("{:.5g}".format))
+    table.to_csv(TABLE, index=False, lineterminator="\n")
+    rows = []
+    for found in fits:
+        rows.append([found.law.name, "rms", "%", f"{100 * found.rms:.4g}", "", ""])
+        for (name, unit, _), value, half in zip(found.law.parameters, found.free, found.half, strict=True):
+            ends = value, value * np.exp(-half), value * np.exp(half)
+            rows.append([found.law.name, name, unit, *(f"{each:.4g}" for each in ends)])
+    head = ["contact", "parameter", "unit", "value", "low", "high"]
+    pd.DataFrame(rows, columns=head).to_csv(PARAMETERS, index=False, lineterminator="\n")
 
 
 def run() -> list[Path]:
-    """Fit, write the tables and draw the figures."""
-    from report.fit_figures import draw
-
+    """Fit, and write the tables."""
     fits = best()
     bench, asked = Bench(Component()), numbers()
-    found = {each.law.name: each.law.values(bench.component, each.free) for each in fits}
-    write(fits, asked, np.array([values_of(bench, each, asked) for each in found.values()]))
-    return [TABLE, PARAMETERS, *draw(bench, found, fits, asked)]
+    found = [each.law.values(bench.component, each.free) for each in fits]
+    write(fits, asked, np.array([values_of(bench, each, asked) for each in found]))
+    return [TABLE, PARAMETERS]

@@ -66,7 +66,7 @@ def test_text_of_the_publication_is_that_of_docs() -> None:
 
 def test_every_figure_is_drawn_with_all_its_curves_and_labels_inside(report: Page) -> None:
     figures = report.locator("figure[id]").all()
-    assert len(figures) == 13
+    assert len(figures) == 17
     for figure in figures:
         drawing = figure.locator("svg:visible")
         box = drawing.bounding_box()

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from relay_contact import Scene
 from relay_contact.figures import significant
-from report import fit
+from report import fit, fit_figures, plots
 from report import published as paper
 from report.figure import Figure
 from report.publication import Publication
@@ -33,6 +33,11 @@ def difference(published: float, value: float, digits: int, unit: str) -> str:
 def points(published: float, value: float) -> str:
     """Return the same cells for percentages, with the difference of their magnitudes."""
     return f"{published:g} % | {signed(value, 2)} % | {signed(abs(value) - abs(published), 2)} points"
+
+
+def figures(of: Publication) -> list[Figure]:
+    """Return the figures of docs/validation.md."""
+    return [*plots.figures(of), *fit_figures.figures()]
 
 
 def page(of: Publication, figures: list[Figure]) -> tuple[str, dict[str, str]]:
