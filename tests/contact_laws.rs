@@ -1,5 +1,6 @@
 //! The contact laws: force, stiffness, energy and divided differences of powers of the indentation.
 
+use fastrand::Rng;
 use relay_contact::reference::{Branch, Law, gauss, reduced_modulus};
 use relay_contact::scene::Scene;
 
@@ -91,5 +92,74 @@ fn energy_and_divided_differences_are_integrals_of_the_force() {
         let deviation = 1e-7 * d0;
         let parabola = 0.5 * law.stiffness(d0) * deviation * deviation;
         close(law.energy_above_tangent(d0, deviation), parabola, 1e-5);
+    }
+}
+
+/// A law from the whole range of a scene, its ends included.
+fn any_law(rng: &mut Rng) -> Law {
+    let mut contact = Scene::default().contact;
+    let ends = [0.0, f64::MIN_POSITIVE, 1e-17, 1e-9, 1.0 / 3.0, 1.0 / 3.0 + 1e-12, 0.9];
+    contact.stiffness_exponent = ends.get(rng.usize(..2 * ends.len())).copied().unwrap_or(0.9 * rng.f64());
+    contact.stiffness = logarithmic(rng, 1.0, 1e10);
+    contact.stiffness_force = logarithmic(rng, 1e-6, 1e3);
+    contact.curvature_radius = logarithmic(rng, 1e-5, 10.0);
+    contact.moving.youngs_modulus = logarithmic(rng, 1e8, 1e13);
+    contact.damping = if rng.bool() { logarithmic(rng, 1e-9, 1.0) } else { 0.0 };
+    if rng.bool() { Law::rough(&contact) } else { Law::hertz(&contact) }
+}
+
+fn logarithmic(rng: &mut Rng, least: f64, greatest: f64) -> f64 {
+    least * (greatest / least).powf(rng.f64())
+}
+
+fn any_rate(rng: &mut Rng) -> f64 {
+    [0.0, 1.0, -1.0][rng.usize(..3)] * logarithmic(rng, 1e-25, 1e4)
+}
+
+/// However small the indentation: down to the smallest number, whose reciprocal is infinite.
+#[test]
+fn every_indentation_has_a_force() {
+    let rng = &mut Rng::with_seed(1);
+    for _ in 0..20_000 {
+        let (law, rate) = (any_law(rng), any_rate(rng));
+        let least = [0.0, 5e-324, 1e-310, f64::MIN_POSITIVE];
+        let d = least.get(rng.usize(..8)).copied().unwrap_or(logarithmic(rng, 1e-300, 1.0));
+        let Branch { force, stiffness, damping } = law.closed_branch(d, rate);
+        let case = format!("{law:?} at {d:e} with {rate:e}: {force} {stiffness} {damping}");
+        assert!(force.is_finite() && stiffness.is_finite() && damping.is_finite(), "{case}");
+        assert!(force * (d + law.exponent * law.damping * rate) >= 0.0 && damping >= 0.0, "{case}");
+        let others = [law.force(d, rate), law.elastic_force(d), law.stiffness(d), law.mean_force(-d, d, rate)];
+        assert!(others.iter().all(|value| (0.0..f64::INFINITY).contains(value)), "{case}: {others:?}");
+    }
+}
+
+#[test]
+fn force_stiffness_energy_and_resistance_agree_in_the_whole_range() {
+    let rng = &mut Rng::with_seed(2);
+    for _ in 0..20_000 {
+        let (law, rate) = (any_law(rng), any_rate(rng));
+        let force = logarithmic(rng, 1e-100, 1e6);
+        let d = law.indentation(force);
+        close(law.elastic_force(d), force, 1e-12);
+        // The resistance of Barber goes by this one.
+        let (factor, exponent) = law.stiffness_by_force();
+        close(factor * force.powf(exponent), law.stiffness(d), 1e-11);
+        let at = |d: f64| law.closed_branch(d, rate);
+        let (branch, way) = (at(d), 1e-5 * d);
+        let slope = (at(d + way).force - at(d - way).force) / (2.0 * way);
+        assert!(
+            (slope - branch.stiffness).abs() < 1e-7 * (branch.force.abs() / d + law.stiffness(d)),
+            "{law:?} {d:e} {rate:e}"
+        );
+        // Force and stiffness grow with the indentation, and their means lie between.
+        let a = d * [-logarithmic(rng, 1e-3, 1e3), 0.0, rng.f64(), 1.0 - logarithmic(rng, 1e-16, 1.0)][rng.usize(..4)];
+        let (small, large) = (1.0 - 1e-12, 1.0 + 1e-12);
+        let between = |mean: f64, of: &dyn Fn(f64) -> f64| mean >= small * of(a) && mean <= large * of(d);
+        assert!(between(law.mean_elastic_force(a, d), &|d| law.elastic_force(d)), "{law:?} {a:e} {d:e}");
+        assert!(between(law.mean_stiffness(a, d), &|d| law.stiffness(d)), "{law:?} {a:e} {d:e}");
+        // The energies above both tangents add up to the rectangle of the differences.
+        let energies = law.energy_above_tangent(a, d - a) + law.energy_above_tangent(d, a - d);
+        let rectangle = (force - law.elastic_force(a)) * (d - a);
+        assert!((energies - rectangle).abs() < 1e-9 * rectangle + 1e-14 * force * d, "{law:?} {a:e} {d:e}");
     }
 }

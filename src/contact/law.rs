@@ -29,6 +29,9 @@ const TRACES: f64 = 1e-3;
 /// The same that is mere rounding, in the force scale, 1.
 const ROUNDING: f64 = f64::EPSILON;
 
+/// Indentation below which bodies do not touch, m: far below all that differs from none, and large enough that a length over it is finite.
+const TOUCH: f64 = 1e-200;
+
 /// Force on the closed branch of the law, with its partial derivatives: of a motion, or of several by arrays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Branch<T = f64> {
@@ -368,13 +371,13 @@ impl Law {
             return self.linear_branches(d, rate);
         }
         // Chosen rather than branched to, and anything where it is open; NaN is not.
-        let held = d.map(|d| if d <= 0.0 { 1.0 } else { d });
+        let held = d.map(|d| if d < TOUCH { 1.0 } else { d });
         let slopes = if self.exponent == HERTZ { held.map(f64::sqrt) } else { powers(&held, self.exponent - 1.0) };
         let (coefficient, exponent, by_rate) = (self.coefficient, self.exponent, self.by_rate());
         let [mut force, mut stiffness, mut damping] = [[0.0; S]; 3];
         for k in 0..S {
             let slope = coefficient * slopes[k];
-            let slope = if d[k] <= 0.0 { 0.0 } else { slope };
+            let slope = if d[k] < TOUCH { 0.0 } else { slope };
             let g = d[k] + by_rate * rate[k];
             force[k] = slope * g;
             stiffness[k] = slope * (1.0 + (exponent - 1.0) * g / held[k]);
