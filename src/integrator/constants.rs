@@ -2,7 +2,7 @@
 //! ratio), source, and the test that pins it. Numbers that follow from a formula, and sizes of memory, stand where they are used.
 //!
 //! *Pinned*: with the number changed as told, that test fails. *Cost*: results do not depend on it, only the work, which the
-//! bench `cost` and `cargo xtask instructions` show. The number of modes is chosen in [`mode_count`](crate::beam::mode_count).
+//! bench `accuracy` and `cargo xtask instructions` show. The number of modes is chosen in [`mode_count`](crate::beam::mode_count).
 
 // Step size.
 
