@@ -9,7 +9,7 @@ use crate::integrator::step_length::{StepOutcome, growth, shrinkage};
 use crate::integrator::stepper::Stepper;
 use crate::math::nodal::LONG;
 use crate::math::prediction::parabola_in_time;
-use crate::state::State;
+use crate::state::{LinkState, State};
 
 impl Stepper<'_> {
     /// The length of a leap from here, s: where a contact has just closed, and nothing that is known ends it.
@@ -56,16 +56,16 @@ impl Stepper<'_> {
         let length = target.length;
         let [ratio, _] = self.judge(trial, target);
         let count = self.model.links.len();
-        let locator = self.locator(trial, length);
-        let mut links = locator.whole.state.links.iter().take(count).enumerate();
-        let mut stay = || {
-            links.all(
-                |(index, at)| {
-                    if at.closed { locator.first_open(index).is_none() } else { locator.near(index).is_none() }
-                },
-            )
+        let mut locator = self.locator(trial, length);
+        let state = locator.whole.state;
+        let stays = |(index, at): (usize, &LinkState)| {
+            if at.closed {
+                locator.first_open(index).is_none()
+            } else {
+                locator.near(index).is_none() && locator.gap(index).is_none()
+            }
         };
-        let is_possible = ratio <= 1.0 && stay();
+        let is_possible = ratio <= 1.0 && state.links.iter().take(count).enumerate().all(stays);
         if !is_possible || !self.commit(trial, target, false)? {
             self.state.rejected_steps += 1;
             self.state.lengths.leap = length * shrinkage::<LONG>(ratio.max(1.0));
