@@ -5,7 +5,7 @@
 
 use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{AxialForceKind, RealOutput};
+use relay_contact::variables::{AxialForceKind, ExcitationKind, PusherKind, RealOutput};
 use testing::promise::{Judged, Outcome, compare, compare_all, judge, judge_all, tighten};
 use testing::relays::{Course, Relay, after};
 use testing::scenes::{accelerated, at_rest, largest_difference, shaken, supported, tip_stiffness};
@@ -104,6 +104,24 @@ fn the_force_after_a_knot_is_within_the_tolerance() {
         assert!(failure.is_none());
         let (force, extremes) = course.error(&expected);
         assert!(force.max(extremes) < tolerance, "{tolerance}: {force} {extremes}");
+    }
+}
+
+/// A long spring that needs all of the modes it may have. A fifth of them, for what follows from the force of the pusher, would bend it
+/// near the clamp alone, and leave a silent error.
+#[test]
+fn a_pusher_near_the_clamp_takes_no_modes_from_the_contacts() {
+    let mut scene = Scene::default();
+    (scene.beam.length, scene.contact.overtravel, scene.parallel.offset) = (0.176_438, 1e-5, 2e-9);
+    (scene.excitation.amplitude, scene.excitation.frequency) = (38.3, 900.0);
+    (scene.effects.excitation, scene.effects.pusher) = (ExcitationKind::Sine, PusherKind::Prescribed);
+    (scene.effects.parallel_contact, scene.solver.tolerance) = (true, 3.55e-6);
+    for position in [1e-2, 3e-2, 0.1, scene.beam.length] {
+        scene.pusher.position = position;
+        let relay = Relay { pusher: -1e-4, ..Relay::of("pusher", scene.clone(), (2e-5, 1000)) };
+        let expected = relay.run(|scene| tighten(scene, PART, 0.0)).unwrap().0;
+        let (force, extremes) = relay.run(|_| {}).unwrap().0.error(&expected);
+        assert!(force.max(extremes) < scene.solver.tolerance, "{position}: {force} {extremes}");
     }
 }
 
