@@ -103,8 +103,10 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
     }
     let Some(following) = step.following.first_chunk::<S>() else { return };
     *slip = tends::<S, A>(collocation, following, (start, &ahead), (step.length, law.damping));
-    for (slip, rate) in slip.rates.iter_mut().zip(&along.rates) {
-        *slip = -rate - *slip;
+    for (slip, (along, across)) in slip.rates.iter_mut().zip(along.rates.iter().zip(&contact.rates)) {
+        // Without a damper the spring moves as the contact does: over a short step rounding of the motion would be a velocity.
+        let spring = if law.damping > 0.0 { *slip } else { friction.limit_deflection(law, sign, *across, 0.0) };
+        *slip = -along - spring;
     }
 }
 
