@@ -45,19 +45,19 @@ impl Stepper<'_> {
         // What sticks slips before it opens.
         let sticks = change.is_some() && state.slip.phase.sign().is_none();
         let mut suspects = [None; MAX_LINKS];
-        let mut closes: Option<Cut> = None;
+        let mut first: Option<Cut> = None;
         for ((index, (link, at)), suspect) in links().zip(&mut suspects) {
             if link.contact().is_none() {
-                closes = earlier(closes, locator.gap(index));
+                first = earlier(first, locator.gap(index));
             } else if at.closed {
                 let held = just_closed(at.last_closing) || sticks && index == CONTACT;
                 *suspect = if held { None } else { locator.first_open(index) };
-            } else if let Some(cut) = locator.closing(index) {
-                closes = earlier(closes, Some(cut));
+            } else {
+                first = earlier(first, locator.closing(index));
             }
         }
         let opens = suspects.iter().any(Option::is_some);
-        let event = opens || closes.is_some();
+        let event = opens || first.is_some();
         let (error, allowed) = if end.is_some() && !event {
             (trial.inner_error.with(passing), model.tolerance.step)
         } else if state.is_closed() {
@@ -83,7 +83,6 @@ impl Stepper<'_> {
         if change.is_some() && inherited > model.tolerance.step.max(trial.rounding) && !is_shortest {
             return Err(self.shorten_before_event::<S>(length, model.tolerance.step / trial.inner_error.total));
         }
-        let mut first = closes;
         for (index, latest) in suspects.into_iter().enumerate().filter_map(|(index, latest)| Some((index, latest?))) {
             first = earlier(first, locator.opening(index, latest));
         }

@@ -101,6 +101,7 @@ pub(crate) fn indented(model: &Model, state: &State, index: usize) -> Option<f64
     let LinkLaw::Magnet(magnet) = &link.law else { return None };
     let (rounding, _) = motion_rounding(model, (link, at), state);
     let unsure = magnet.gap_of(model.tolerance.at_event, state.coil).max(rounding);
+    // Found to `unsure`, the instant of the gap must not be one of indentation again.
     (link.approach + at.approach < -2.0 * unsure).then_some(unsure)
 }
 

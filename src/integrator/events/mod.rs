@@ -1,6 +1,6 @@
-//! Events inside a trial step: openings and closings of contacts, changes between stick and slip, interruptions. A step ends where
-//! a contact opens or closes, or begins or ceases to slip, and integration restarts there; where an interruption begins or ends
-//! it goes on.
+//! Events inside a trial step: openings and closings of contacts, gaps of magnets, changes between stick and slip, interruptions. A step
+//! ends where a contact opens or closes, or begins or ceases to slip, or where a gap opens, and integration restarts there; where an
+//! interruption begins or ends it goes on.
 
 pub mod closing;
 pub mod cubic;
