@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{BooleanOutput, ContactLawKind, PusherKind, RealOutput};
+use relay_contact::variables::{BooleanOutput, ContactLawKind, FrictionKind, PusherKind, RealOutput};
 use testing::scenes::{bending_stiffness, shaken};
 use testing::{close, near};
 
@@ -25,20 +25,31 @@ fn at(pusher_displacement: f64) -> Inputs {
 }
 
 /// Cantilever under forces at the tip and at the pusher (Timoshenko): deflections L^3 / (3 EI), x^2 (3 L - x) / (6 EI) and
-/// x^3 / (3 EI) per force.
+/// x^3 / (3 EI) per force, L^2 / (2 EI) and x^2 / (2 EI) per moment of friction at the tip.
 #[test]
 fn pusher_and_contact_share_the_bending_of_the_spring() {
     let mut scene = pushed(Scene::default());
     scene.environment.gravity = 30.0;
+    share_the_bending(&scene);
+    scene.effects.friction = FrictionKind::Coulomb;
+    scene.friction.coefficient = 0.5;
+    scene.friction.initial = 0.8;
+    scene.tip.contact_height = 2e-3;
+    share_the_bending(&scene);
+}
+
+fn share_the_bending(scene: &Scene) {
     let (length, x) = (scene.beam.length, scene.pusher.position);
-    let bending = bending_stiffness(&scene);
+    let bending = bending_stiffness(scene);
     let load = scene.beam.density * scene.beam.width * scene.beam.thickness * 30.0;
-    let by_contact = length.powi(3) / (3.0 * bending);
+    let lever = if scene.effects.friction == FrictionKind::Coulomb { 0.5 * 0.8 * 2e-3 } else { 0.0 };
+    let by_contact = length.powi(3) / (3.0 * bending) + lever * length.powi(2) / (2.0 * bending);
     let across = x * x * (3.0 * length - x) / (6.0 * bending);
+    let by_contact_there = across + lever * x * x / (2.0 * bending);
     let by_pusher = x.powi(3) / (3.0 * bending);
     let sag = |x: f64| load * x * x * (6.0 * length * length - 4.0 * length * x + x * x) / (24.0 * bending);
     for place in [3e-4, 6e-4] {
-        let simulation = Simulation::new(&scene, &at(place), 0.0).unwrap();
+        let simulation = Simulation::new(scene, &at(place), 0.0).unwrap();
         let preload = simulation.model().preload;
         let (force, push) = (preload.force, preload.pusher_force);
         assert!(force > 0.01 && push > force);
@@ -46,13 +57,13 @@ fn pusher_and_contact_share_the_bending_of_the_spring() {
         let tip = by_contact * force - across * push - sag(length);
         same(preload.deflection, tip);
         same(preload.indentation, scene.contact.overtravel - tip);
-        let there = across * force - by_pusher * push - sag(x);
+        let there = by_contact_there * force - by_pusher * push - sag(x);
         same(push / scene.pusher.stiffness, place + there);
         same(simulation.real(RealOutput::PusherForce), push);
         assert!(simulation.boolean(BooleanOutput::PusherClosed));
     }
     // Too far away, it leaves the spring as it is.
-    let simulation = Simulation::new(&scene, &at(-1e-4), 0.0).unwrap();
+    let simulation = Simulation::new(scene, &at(-1e-4), 0.0).unwrap();
     let preload = simulation.model().preload;
     assert_eq!((preload.force, preload.pusher_force), (0.0, 0.0));
     assert!((preload.pusher_overlap + 1e-4 + sag(x)).abs() < 1e-15);
