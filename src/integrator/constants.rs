@@ -144,9 +144,6 @@ pub const AT_EVENT: f64 = 0.01;
 /// to the instant of a closing, at which a wrong instant is a wrong force. Chosen.
 pub const SEEN: f64 = 1e-9;
 
-/// Length of a step within which an interruption begins or ends anywhere, in least durations times the tolerance, 1. Cost.
-pub const BRIEF: f64 = 0.3;
-
 /// Distance beyond which the other contact is not looked for in a step of flight, in ways of the tip at its nodes and at the
 /// fastest velocity there, 1. What swings unseen between so many nodes is no larger. Pinned: negative, `tests/second`.
 pub const DISTANT: f64 = 8.0;

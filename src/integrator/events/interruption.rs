@@ -3,7 +3,6 @@
 
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Variable;
-use crate::integrator::constants::BRIEF;
 use crate::integrator::course::{Places, turning_points};
 use crate::integrator::events::Locator;
 use crate::link::MAX_LINKS;
@@ -47,8 +46,6 @@ impl<const S: usize> Locator<'_, S> {
         if !is_accurate && whole.collocation.variable == Variable::Root {
             return false;
         }
-        let is_brief = whole.length
-            <= BRIEF * whole.model.scene.solver.effective_tolerance() * whole.model.scene.chatter.minimum_duration;
         let unsure = inaccuracy * allowed;
         if !is_accurate && !must && turns.iter().any(|y| value(y).abs() < unsure) {
             return false;
@@ -59,7 +56,7 @@ impl<const S: usize> Locator<'_, S> {
             let now = (y, value(y));
             let below = if is_end { end } else { now.1 < 0.0 };
             if below != interrupted {
-                let place = if is_accurate || is_brief {
+                let place = if is_accurate {
                     // Only rounding leaves both on one side.
                     let course = |y: f64| {
                         let (force, slope) = value_and_slope(&polynomial, y);
