@@ -241,11 +241,6 @@ impl<'a> Stepper<'a> {
         if self.progress.driven { DRIVEN } else { 1.0 }
     }
 
-    /// Whether the contact begins or ceases to slip at the start of the next step.
-    pub(super) fn changes_now(&self) -> bool {
-        self.model.friction().is_some() && self.state.slip.last_change == Some(self.state.time)
-    }
-
     /// Whether the step cannot be halved.
     pub(super) fn is_shortest(&self, target: &Target) -> bool {
         target.length <= 2.0 * self.shortest()

@@ -4,7 +4,7 @@
 use crate::error::{StepError, StepErrorCause};
 use crate::inputs::Inputs;
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::{HALVINGS, LEAST_SHRINK, MOST_SHRINK, SAFETY, STEP_GROWTH};
+use crate::integrator::constants::{HALVINGS, MOST_SHRINK, SAFETY, STEP_GROWTH};
 use crate::integrator::energy::conservation;
 use crate::integrator::grid::{Grid, Target};
 use crate::integrator::rest::rests_until;
@@ -118,13 +118,7 @@ impl Stepper<'_> {
             if is_least {
                 return Err(self.error(StepErrorCause::NotFinite));
             }
-            let shrink = if self.changes_now() {
-                // Where the force bends the error is of order one.
-                (SAFETY / ratio).clamp(LEAST_SHRINK, MOST_SHRINK)
-            } else {
-                shrinkage::<S>(ratio)
-            };
-            return Ok(self.reject(target.length * shrink));
+            return Ok(self.reject(target.length * shrinkage::<S>(ratio)));
         }
         // The energy may reveal an error that the estimate misses.
         let watches = self.progress.conserves && closed;
@@ -142,7 +136,7 @@ impl Stepper<'_> {
         if let Some(cut) = cut {
             return self.end_at(&cut, trial, target, (growth, most), requested);
         }
-        let is_first = self.changes_now();
+        let is_first = self.state.slip.last_change == Some(self.state.time);
         if !self.commit(trial, target, self.is_shortest(target))? {
             return Ok(self.reject(MOST_SHRINK * target.length));
         }
