@@ -72,10 +72,6 @@ impl Stepper<'_> {
         };
         if (event || end.is_some()) && !fits() {
             self.progress.before_event = true;
-            if self.state.is_closed() {
-                // More nodes do better inside than a shorter step.
-                self.state.lengths.long = self.state.lengths.long.max(length);
-            }
             return Err(self.shorten_before_event::<S>(length, allowed / error));
         }
         // No blow follows a change between stick and slip.
