@@ -2,14 +2,11 @@
 
 use std::mem;
 
-use bytemuck::allocation::zeroed_vec;
-
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::polynomial::Collocation;
-use crate::integrator::collocation::store::{Basis, Store};
-use crate::integrator::collocation::superposition::Sum;
+use crate::integrator::collocation::store::Store;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::shared::{Home, Shared, Shelf};
@@ -29,10 +26,7 @@ pub struct Cache<const S: usize> {
     left: Shared<Left<S>>,
     /// The polynomials.
     pub(crate) collocation: &'static Collocation<S>,
-    /// For recurring lengths, and first for the last other one.
     places: Store<S>,
-    /// While coefficients are computed: for each response, and for one mode.
-    sums: Vec<Sum<S>>,
     /// Piece of a random acceleration.
     piece: Piece,
 }
@@ -51,30 +45,26 @@ pub struct Prepared<'a, const S: usize> {
 impl<const S: usize> Cache<S> {
     /// With what another simulation of the same modes has left, or allocated for the model.
     pub fn new(model: &Model, home: &'static Home<Left<S>>, collocation: &'static Collocation<S>) -> Self {
-        let (left, basis) = (Shared::of(home), Basis::of(model));
-        let places = match left.take(|places| places.is_of(&basis)) {
+        let left = Shared::of(home);
+        let places = match left.take(|places| places.is_of(model)) {
             Some(mut places) => {
                 places.turn(&model.generator);
                 places
             }
-            None => Store::for_model(basis, model),
+            None => Store::new(model),
         };
-        Self { sums: zeroed_vec(Store::<S>::sums(model)), left, collocation, places, piece: Piece::default() }
+        Self { left, collocation, places, piece: Piece::default() }
     }
 
     /// What it takes of memory for the model at most, bytes.
     pub fn size(model: &Model) -> usize {
-        Store::<S>::sums(model) * size_of::<Sum<S>>() + Store::<S>::size(model)
+        Store::<S>::size(model)
     }
 
     /// The coefficients for a length, with the base acceleration of a step from `time` (s) on.
     pub fn prepare(&mut self, time: f64, length: f64, recurring: bool, model: &Model) -> Prepared<'_, S> {
         let collocation = self.collocation;
-        let place = self.places.place(length, recurring, collocation);
-        if !self.places.has(place, length, collocation) {
-            self.places.fill(place, length, model, collocation, &mut self.sums);
-        }
-        let step = self.places.view(place);
+        let step = self.places.prepare(length, recurring, model, collocation);
         Prepared {
             step,
             collocation,

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use bytemuck::allocation::zeroed_vec;
 use bytemuck::{Zeroable, write_zeroes};
 
 use crate::beam::mode::Mode;
@@ -32,6 +33,9 @@ const LEAPS: usize = 32;
 /// All of them.
 const SLOTS: usize = FREE + PARTS + LEAPS;
 
+/// One for each, and one for the last length that does not recur.
+const PLACES: usize = SLOTS + 1;
+
 /// The slot of a length. Those of free steps, 1 and 1.5 times powers of two, have neighbouring ones, and so have dyadic fractions of
 /// another length, which start anywhere (Fibonacci hashing).
 fn slot(length: f64, variable: Variable) -> usize {
@@ -48,44 +52,50 @@ fn slot(length: f64, variable: Variable) -> usize {
     FREE + usize::try_from((octave >> 1) + start).unwrap_or_default() % PARTS
 }
 
-/// All that the coefficients of a length depend on, but for the generator.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Basis {
-    modes: Vec<Mode>,
-    ports: Vec<Port>,
-    /// Whether an axial force loads each mode.
-    axial: bool,
-    /// Damping time of the contact, s, where it rubs.
-    rubbing: Option<f64>,
-    portable: bool,
+/// The same number of things for each length, in places that are made as they are needed: room for all of them is reserved, as steps do
+/// not allocate, but not touched before.
+#[derive(Debug)]
+struct Blocks<T> {
+    all: Vec<T>,
+    /// How many a place has.
+    size: usize,
 }
 
-impl Basis {
-    pub(super) fn of(model: &Model) -> Self {
-        Self {
-            modes: model.modes.clone(),
-            ports: model.ports.clone(),
-            axial: model.axial.is_some(),
-            rubbing: model.friction().map(|_| model.law.damping),
-            portable: matches!(model.simd, Simd::Portable),
-        }
+impl<T> Blocks<T> {
+    fn reserved(size: usize) -> Self {
+        Self { all: Vec::with_capacity(PLACES * size), size }
+    }
+
+    /// Makes another place.
+    fn add(&mut self, make: impl FnMut() -> T) {
+        self.all.resize_with(self.all.len() + self.size, make);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "a place that is there")]
+    fn of(&self, place: usize) -> &[T] {
+        &self.all[place * self.size..(place + 1) * self.size]
+    }
+
+    #[expect(clippy::indexing_slicing, reason = "a place that is there")]
+    fn of_mut(&mut self, place: usize) -> &mut [T] {
+        &mut self.all[place * self.size..(place + 1) * self.size]
     }
 }
 
-/// Coefficients of steps of several lengths, in places that are made as they are needed: room for all of them is reserved, but
-/// not touched before.
-#[derive(Debug, Default)]
-pub(crate) struct Store<const S: usize> {
-    basis: Basis,
-    places: Vec<Place<S>>,
-    rows: Vec<NodeRows<S>>,
-    responses: Vec<Response<S>>,
-    columns: Vec<ModeColumns<S>>,
-    following: Vec<Nodal<S>>,
-    ends: Vec<EndGroup<S>>,
-    sizes: Sizes,
-    /// The place of each slot that a recurring length may have by its hash; 0: none yet.
-    of_slot: Vec<u8>,
+impl<T> Default for Blocks<T> {
+    fn default() -> Self {
+        Self { all: Vec::new(), size: 0 }
+    }
+}
+
+impl<T: Clone> Clone for Blocks<T> {
+    /// With the same room.
+    fn clone(&self) -> Self {
+        let mut same = Self::reserved(self.size);
+        same.all.extend_from_slice(&self.all);
+        same
+    }
 }
 
 /// What every place has one of. Each reserved room costs a page of memory, however little of it is used.
@@ -97,80 +107,98 @@ struct Place<const S: usize> {
     turns: Turns<S>,
 }
 
-/// How many there are of each in a place.
+/// Coefficients of steps of several lengths.
 #[derive(Clone, Debug, Default)]
-struct Sizes {
-    rows: usize,
-    responses: usize,
-    columns: usize,
-    following: usize,
-    ends: usize,
+pub(crate) struct Store<const S: usize> {
+    /// All that they depend on, but for the generator.
+    modes: Vec<Mode>,
+    ports: Vec<Port>,
+    /// Damping time of the contact, s, where it rubs.
+    rubbing: Option<f64>,
+    portable: bool,
+    places: Blocks<Place<S>>,
+    rows: Blocks<NodeRows<S>>,
+    responses: Blocks<Response<S>>,
+    /// Where an axial force loads each mode.
+    columns: Blocks<ModeColumns<S>>,
+    /// Where the contact rubs.
+    following: Blocks<Nodal<S>>,
+    ends: Blocks<EndGroup<S>>,
     /// Where the rows of each port begin and end.
     of_port: Vec<Range<usize>>,
+    /// The place of each slot that a recurring length may have by its hash; 0: none yet.
+    of_slot: Vec<u8>,
+    /// While coefficients are computed: for each response, and for one mode.
+    sums: Vec<Sum<S>>,
 }
 
-/// The part of a place of this size.
-#[inline(always)]
-#[expect(clippy::indexing_slicing, reason = "places that are there")]
-fn part<T>(all: &[T], place: usize, size: usize) -> &[T] {
-    &all[place * size..(place + 1) * size]
+/// How many rows, responses, columns, following velocities and groups of modes at the end a place has.
+fn sizes<const S: usize>(model: &Model) -> [usize; 5] {
+    let rows = model.ports.iter().map(|port| port.modes.len()).sum();
+    let columns = if model.axial.is_some() { model.modes.len() } else { 0 };
+    let following = if model.friction().is_some() { S } else { 0 };
+    [rows, responses_before(model.ports.len()), columns, following, model.modes.len().div_ceil(LANES)]
 }
 
-/// The same to be written.
-#[expect(clippy::indexing_slicing, reason = "places that are there")]
-fn part_mut<T>(all: &mut [T], place: usize, size: usize) -> &mut [T] {
-    &mut all[place * size..(place + 1) * size]
-}
-
-impl Sizes {
-    fn of<const S: usize>(model: &Model) -> Self {
-        let mut rows = 0;
-        let of_port = model.ports.iter().map(|port| {
-            let first = rows;
-            rows += port.modes.len();
-            first..rows
-        });
-        let of_port = of_port.collect();
-        Self {
-            rows,
-            responses: responses_before(model.ports.len()),
-            columns: if model.axial.is_some() { model.modes.len() } else { 0 },
-            following: if model.friction().is_some() { S } else { 0 },
-            ends: model.modes.len().div_ceil(LANES),
-            of_port,
-        }
-    }
-
-    /// What a place takes of memory, bytes.
-    fn bytes<const S: usize>(&self) -> usize {
-        size_of::<Place<S>>()
-            + self.rows * size_of::<NodeRows<S>>()
-            + self.responses * size_of::<Response<S>>()
-            + self.columns * size_of::<ModeColumns<S>>()
-            + self.following * size_of::<Nodal<S>>()
-            + self.ends * size_of::<EndGroup<S>>()
-    }
+/// Damping time of the contact, s, where it rubs.
+fn rubbing(model: &Model) -> Option<f64> {
+    model.friction().map(|_| model.law.damping)
 }
 
 impl<const S: usize> Store<S> {
-    /// With room for all lengths of a model, of which this is the basis.
-    pub(super) fn for_model(basis: Basis, model: &Model) -> Self {
-        Self::reserved(basis, Sizes::of::<S>(model))
-    }
-
-    /// How many sums [`Store::fill`] takes for a model: for each response, and for one mode.
-    pub(super) fn sums(model: &Model) -> usize {
-        responses_before(model.ports.len()) + 1
+    /// With room for all lengths of a model.
+    pub(super) fn new(model: &Model) -> Self {
+        let [rows, responses, columns, following, ends] = sizes::<S>(model);
+        let mut before = 0;
+        let of_port = model.ports.iter().map(|port| {
+            let first = before;
+            before += port.modes.len();
+            first..before
+        });
+        Self {
+            modes: model.modes.clone(),
+            ports: model.ports.clone(),
+            rubbing: rubbing(model),
+            portable: matches!(model.simd, Simd::Portable),
+            places: Blocks::reserved(1),
+            rows: Blocks::reserved(rows),
+            responses: Blocks::reserved(responses),
+            columns: Blocks::reserved(columns),
+            following: Blocks::reserved(following),
+            ends: Blocks::reserved(ends),
+            of_port: of_port.collect(),
+            of_slot: vec![0; SLOTS],
+            sums: zeroed_vec(responses + 1),
+        }
     }
 
     /// What it takes of memory for a model at most, bytes.
     pub(super) fn size(model: &Model) -> usize {
-        (SLOTS + 1) * Sizes::of::<S>(model).bytes::<S>()
+        let [rows, responses, columns, following, ends] = sizes::<S>(model);
+        let place = size_of::<Place<S>>()
+            + rows * size_of::<NodeRows<S>>()
+            + responses * size_of::<Response<S>>()
+            + columns * size_of::<ModeColumns<S>>()
+            + following * size_of::<Nodal<S>>()
+            + ends * size_of::<EndGroup<S>>();
+        PLACES * place + (responses + 1) * size_of::<Sum<S>>()
     }
 
-    /// Whether its coefficients are those of a basis.
-    pub(super) fn is_of(&self, basis: &Basis) -> bool {
-        self.basis == *basis
+    /// Whether its coefficients are those of a model.
+    pub(super) fn is_of(&self, model: &Model) -> bool {
+        self.modes == model.modes
+            && self.ports == model.ports
+            && (self.columns.size > 0) == model.axial.is_some()
+            && self.rubbing == rubbing(model)
+            && self.portable == matches!(model.simd, Simd::Portable)
+    }
+
+    /// Makes it one for steps with this generator.
+    pub(super) fn turn(&mut self, generator: &Generator) {
+        for place in &mut self.places.all {
+            place.turns = Turns::NONE;
+            place.turns.fill(generator, place.length, &place.collocation.nodes);
+        }
     }
 
     /// The coefficients for a length, if they are known.
@@ -185,9 +213,24 @@ impl<const S: usize> Store<S> {
         self.has(place, length, collocation).then(|| self.view(place))
     }
 
-    /// The place for the coefficients of a length, `recurring`: one that is kept.
-    pub(super) fn place(&mut self, length: f64, recurring: bool, collocation: &'static Collocation<S>) -> usize {
-        if self.places.is_empty() {
+    /// The coefficients for a length, `recurring`: one that is kept.
+    pub(super) fn prepare(
+        &mut self,
+        length: f64,
+        recurring: bool,
+        model: &Model,
+        collocation: &'static Collocation<S>,
+    ) -> StepCoefficients<'_, S> {
+        let place = self.place(length, recurring, collocation);
+        if !self.has(place, length, collocation) {
+            self.fill(place, length, model, collocation);
+        }
+        self.view(place)
+    }
+
+    /// The place for them.
+    fn place(&mut self, length: f64, recurring: bool, collocation: &'static Collocation<S>) -> usize {
+        if self.places.all.is_empty() {
             // That of a length that does not recur.
             self.add(collocation);
         }
@@ -204,47 +247,21 @@ impl<const S: usize> Store<S> {
         place
     }
 
-    /// Reserves room for a place for each slot, and one more.
-    fn reserved(basis: Basis, sizes: Sizes) -> Self {
-        let places = SLOTS + 1;
-        Self {
-            basis,
-            places: Vec::with_capacity(places),
-            rows: Vec::with_capacity(places * sizes.rows),
-            responses: Vec::with_capacity(places * sizes.responses),
-            columns: Vec::with_capacity(places * sizes.columns),
-            following: Vec::with_capacity(places * sizes.following),
-            ends: Vec::with_capacity(places * sizes.ends),
-            sizes,
-            of_slot: vec![0; SLOTS],
-        }
-    }
-
-    /// Makes it one for steps with this generator.
-    pub(super) fn turn(&mut self, generator: &Generator) {
-        for place in &mut self.places {
-            place.turns = Turns::NONE;
-            place.turns.fill(generator, place.length, &place.collocation.nodes);
-        }
-    }
-
     /// Makes a place, for no length yet; returns its index. Out of line, for the sake of the stack.
     #[inline(never)]
     fn add(&mut self, collocation: &'static Collocation<S>) -> usize {
-        let place = self.places.len();
-        let (sizes, places) = (&self.sizes, place + 1);
-        self.rows.resize_with(places * sizes.rows, NodeRows::zeroed);
-        self.responses.resize_with(places * sizes.responses, Response::zeroed);
-        self.columns.resize_with(places * sizes.columns, ModeColumns::zeroed);
-        self.following.resize(places * sizes.following, [0.0; S]);
-        self.ends.resize_with(places * sizes.ends, EndGroup::zeroed);
-        self.places.push(Place { length: 0.0, collocation, turns: Turns::NONE });
-        place
+        self.rows.add(NodeRows::zeroed);
+        self.responses.add(Response::zeroed);
+        self.columns.add(ModeColumns::zeroed);
+        self.following.add(|| [0.0; S]);
+        self.ends.add(EndGroup::zeroed);
+        self.places.add(|| Place { length: 0.0, collocation, turns: Turns::NONE });
+        self.places.all.len() - 1
     }
 
     /// Whether a place has the coefficients for a length.
-    pub(super) fn has(&self, place: usize, length: f64, collocation: &Collocation<S>) -> bool {
-        self.places.get(place).is_some_and(|own| {
+    fn has(&self, place: usize, length: f64, collocation: &Collocation<S>) -> bool {
+        self.places.all.get(place).is_some_and(|own| {
             own.length.to_bits() == length.to_bits() && own.collocation.variable == collocation.variable
         })
     }
@@ -252,68 +269,44 @@ impl<const S: usize> Store<S> {
     /// What is in a place.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "a place that is there")]
-    pub(super) fn view(&self, place: usize) -> StepCoefficients<'_, S> {
-        let sizes = &self.sizes;
-        let Place { length, turns, .. } = &self.places[place];
+    fn view(&self, place: usize) -> StepCoefficients<'_, S> {
+        let Place { length, turns, .. } = &self.places.all[place];
         StepCoefficients {
             length: *length,
-            columns: part(&self.columns, place, sizes.columns),
-            following: part(&self.following, place, sizes.following),
-            end: part(&self.ends, place, sizes.ends),
+            columns: self.columns.of(place),
+            following: self.following.of(place),
+            end: self.ends.of(place),
             turns,
-            responses: part(&self.responses, place, sizes.responses),
-            rows: part(&self.rows, place, sizes.rows),
-            of_port: &sizes.of_port,
+            responses: self.responses.of(place),
+            rows: self.rows.of(place),
+            of_port: &self.of_port,
         }
     }
 
     /// Computes the coefficients for a length in place.
     #[inline(never)]
     #[expect(clippy::indexing_slicing, reason = "a place that is there")]
-    pub(super) fn fill(
-        &mut self,
-        place: usize,
-        length: f64,
-        model: &Model,
-        collocation: &'static Collocation<S>,
-        sums: &mut [Sum<S>],
-    ) {
-        let (h, shapes, simd) = (length, &collocation.shapes, model.simd);
-        let sizes = &self.sizes;
-        let own = &mut self.places[place];
+    fn fill(&mut self, place: usize, length: f64, model: &Model, collocation: &'static Collocation<S>) {
+        let (shapes, simd) = (&collocation.shapes, model.simd);
+        let own = &mut self.places.all[place];
         (own.length, own.collocation) = (length, collocation);
         own.turns.fill(&model.generator, length, &collocation.nodes);
         let mut modes = Modes {
-            rows: part_mut(&mut self.rows, place, sizes.rows),
-            of_port: &sizes.of_port,
-            columns: part_mut(&mut self.columns, place, sizes.columns),
-            end: part_mut(&mut self.ends, place, sizes.ends),
+            rows: self.rows.of_mut(place),
+            of_port: &self.of_port,
+            columns: self.columns.of_mut(place),
+            end: self.ends.of_mut(place),
         };
+        let sums = &mut self.sums;
         sums.iter_mut().for_each(write_zeroes);
-        compiled_for!(simd, A => modes.set::<A>(h, model, collocation, sums));
-        let responses = part_mut(&mut self.responses, place, sizes.responses);
-        for (response, sum) in responses.iter_mut().zip(&*sums) {
-            response.set(sum, simd, shapes, h);
+        compiled_for!(simd, A => modes.set::<A>(length, model, collocation, sums));
+        for (response, sum) in self.responses.of_mut(place).iter_mut().zip(sums) {
+            response.set(sum, simd, shapes, length);
         }
-        if sizes.following > 0 {
-            let following = compiled_for!(simd, A => following::<S, A>(model.law.damping, h, shapes));
-            part_mut(&mut self.following, place, sizes.following).copy_from_slice(&following);
+        if let Some(damping) = self.rubbing {
+            let following = compiled_for!(simd, A => following::<S, A>(damping, length, shapes));
+            self.following.of_mut(place).copy_from_slice(&following);
         }
-    }
-}
-
-impl<const S: usize> Clone for Store<S> {
-    /// With the same room, as steps do not allocate.
-    fn clone(&self) -> Self {
-        let mut same = Self::reserved(self.basis.clone(), self.sizes.clone());
-        same.places.extend_from_slice(&self.places);
-        same.rows.extend_from_slice(&self.rows);
-        same.responses.extend_from_slice(&self.responses);
-        same.columns.extend_from_slice(&self.columns);
-        same.following.extend_from_slice(&self.following);
-        same.ends.extend_from_slice(&self.ends);
-        same.of_slot.clone_from(&self.of_slot);
-        same
     }
 }
 
