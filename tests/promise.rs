@@ -283,7 +283,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
             assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
         }
     }
-    // At the tightest tolerance rounding sends a step to the fallback, whose mean force over 5e-18 s was a maximum that never was.
+    // At the tightest tolerance the mean force of a step of 5e-18 s was mere rounding, and made a maximum that never was.
     let judged = judge(61_576, kinds::any, 0.0);
     assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
 }
