@@ -62,10 +62,9 @@ fn prepare(component: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Cargo's command for all packages but benches, whose integrators take long to compile. The selection is the same for each
-/// subcommand: with another one cargo chooses other features of what others wrote, and compiles much of it again. The build of
-/// the FMI bindings in `conformance` needs libclang, and the C compiler's own headers (`stddef.h`), which the libclang of
-/// `.venv` lacks.
+/// Cargo's command for all packages. The selection is the same for each subcommand: with another one cargo chooses other
+/// features of what others wrote, and compiles much of it again. The build of the FMI bindings in `conformance` needs
+/// libclang, and the C compiler's own headers (`stddef.h`), which the libclang of `.venv` lacks.
 pub fn workspace(subcommand: &str) -> Result<Command> {
     let mut include = OsString::new();
     if cfg!(unix) {
@@ -74,7 +73,7 @@ pub fn workspace(subcommand: &str) -> Result<Command> {
     }
     let mut cargo = cargo();
     cargo
-        .args([subcommand, "--workspace", "--exclude=benches"])
+        .args([subcommand, "--workspace"])
         .env("LIBCLANG_PATH", python::libclang()?)
         .env("BINDGEN_EXTRA_CLANG_ARGS", include);
     Ok(cargo)
