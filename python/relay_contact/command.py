@@ -23,7 +23,7 @@ EXAMPLES = """examples:
   relay-contact list --relay paper                     is its contact smooth enough for Hertz's law?
   relay-contact list --variables excitation            variables whose names contain a text, with unit and start value
   relay-contact run paper-1khz                         writes paper-1khz.csv and paper-1khz.png
-  relay-contact run chatter-41g --set excitation.frequency=500 --output contact.voltage
+  relay-contact run chatter-41g --set excitation.frequency=1250 --output contact.voltage
   relay-contact ssv paper-1khz --plain                 what the scene changes, for tools that read SSP 1.0
   relay-contact explore                                a page with sliders in the browser; no server, no network
   relay-contact qualify paper --standard MIL-PRF-28776  verdicts and margins, qualification.html
@@ -75,14 +75,16 @@ def list_all(given: argparse.Namespace) -> None:
 def list_variables(component: Component, text: str) -> None:
     """Print the variables whose names contain a text."""
     shown = units(component.description)
-    for name, variable in component.variables.items():
-        if text.lower() in name.lower():
-            what = variable.causality
-            if what in ("parameter", "input"):
-                what += f" {component.start(name)}"
-            unit = shown[name].si if name in shown else ""
-            choices = f" [{', '.join(component.choices(name))}]" if variable.type == "Enumeration" else ""
-            print(f"{name} ({what}{f' {unit}' if unit else ''}){choices}: {variable.description or ''}")
+    chosen = {name: each for name, each in component.variables.items() if text.lower() in name.lower()}
+    if not chosen:
+        raise RelayContactError(f"--variables {text}: no variable has this in its name")
+    for name, variable in chosen.items():
+        what = variable.causality
+        if what in ("parameter", "input"):
+            what += f" {component.start(name)}"
+        unit = shown[name].si if name in shown else ""
+        choices = f" [{', '.join(component.choices(name))}]" if variable.type == "Enumeration" else ""
+        print(f"{name} ({what}{f' {unit}' if unit else ''}){choices}: {variable.description or ''}")
 
 
 def run_scene(given: argparse.Namespace) -> None:
@@ -106,7 +108,8 @@ def run_scene(given: argparse.Namespace) -> None:
             changes[name], value = str(Path(value).resolve()), Path(value).name
         words.append(f"{name}={value}")
     scene = Scene.read(given.scene, component).changed(component, changes)
-    titled = ", ".join([scene.title, *words])
+    # The title tells of the scene as it is in its file.
+    titled = f"{scene.title}{'; changed: ' if words else ''}{', '.join(words)}"
     names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))
     told = list(dict.fromkeys([*names, *TOLD]))
     result = run(scene, outputs=told, stop=given.stop, step=given.step, component=component, progress=True)
@@ -335,7 +338,11 @@ def main(arguments: list[str] | None = None) -> int:
         # Whoever read what was printed has enough.
         sys.stdout = None
         return 0
-    except (RelayContactError, OSError) as error:
+    except RelayContactError as error:
         print(f"relay-contact: {error}", file=sys.stderr)
+        return 1
+    except OSError as error:
+        told = f"{error.filename}: {error.strerror}" if error.filename else error
+        print(f"relay-contact: {told}", file=sys.stderr)
         return 1
     return 0

@@ -76,7 +76,9 @@ def test_the_command_runs_a_scene_as_asked(tmp_path: Path, capsys: pytest.Captur
     table = read_table(tmp_path / "paper-1khz,excitation.frequency=500.csv")
     assert table["time"] == pytest.approx(np.linspace(0, 1e-3, 11))
     force = table["contact.force"]
-    assert f" {force.min():.6g} to {force.max():.6g} N\n" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert f" {force.min():.6g} to {force.max():.6g} N\n" in printed
+    assert printed.startswith("The published 1 kHz run; changed: excitation.frequency=500\n")
     assert np.ptp(table["tip.velocity"]) > 0
 
 
@@ -100,6 +102,15 @@ def test_the_command_passes_on_all_options_of_a_qualification(monkeypatch: pytes
 def test_the_command_lists_variables_with_their_choices(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["list", "--variables", "contactLaw"]) == 0
     assert "effects.contactLaw (parameter Hertz) [Hertz, Linearised, Bonded, Rough]" in capsys.readouterr().out
+    assert main(["list", "--variables", "contactLow"]) == 1
+    assert "contactLow: no variable has this in its name" in capsys.readouterr().err
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    missing = str(tmp_path / "run.csv")
+    for command in (["plot", missing], ["compare", missing, missing]):
+        assert main(command) == 1
+        assert capsys.readouterr().err == f"relay-contact: {missing}: No such file or directory\n"
 
 
 def test_the_command_takes_a_spring_file_from_where_it_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
