@@ -35,7 +35,7 @@ pub fn stages(component: &Path) -> Result<()> {
         let mut test = workspace("test")?;
         run_command(test.arg("--test=importers").env("RELAY_CONTACT_FMU", component))
     })?;
-    stage("importers", || python::report("importers", &[]))
+    stage("importers", || python::report(&["importers"]))
 }
 
 /// The rows shown in the full report: importers called from Python.

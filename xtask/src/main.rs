@@ -28,7 +28,7 @@ use clap::{Parser, Subcommand};
 use self::variant::Variant;
 
 #[derive(Parser)]
-#[command(name = "cargo xtask", about = "Tasks of relay-contact", arg_required_else_help = true)]
+#[command(bin_name = "cargo xtask", about = "Tasks of relay-contact", arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
     task: Task,
@@ -54,13 +54,22 @@ enum Task {
     /// Build the component, run the published 1 kHz case under FMPy, compare and plot
     Demo,
     /// Measure time over accuracy, compared with other integrators; rewrite tables and figures of docs/accuracy.md
-    #[command(disable_help_flag = true)]
-    Accuracy(report::Arguments),
+    Accuracy {
+        /// Few settings, into out/accuracy alone
+        #[arg(long)]
+        quick: bool,
+    },
     /// Measure the cost and influence of each effect; rewrite docs/effects.md
     Effects,
     /// Run everything shown in the report; write out/report/index.html, docs/validation.md and pictures of docs/report
-    #[command(disable_help_flag = true)]
-    Report(report::Arguments),
+    Report {
+        /// Fewer points and runs, all into out/report-quick: to see that everything works
+        #[arg(long)]
+        quick: bool,
+        /// Before, fit the contact to the published numbers anew
+        #[arg(long)]
+        fit: bool,
+    },
     /// Test the component in other importers and print the table of results
     Importers,
     /// Check calls as from importers for memory errors and leaks, under valgrind
@@ -83,12 +92,12 @@ fn main() -> ExitCode {
         Task::Explore => explore::run_task(),
         Task::Docs => site::run(),
         Task::Demo => demo(),
-        Task::Accuracy(arguments) => report::accuracy(&arguments),
+        Task::Accuracy { quick } => report::accuracy(quick),
         Task::Effects => report::with_component("effects"),
-        Task::Report(arguments) => report::run(&arguments),
+        Task::Report { quick, fit } => report::run(quick, fit),
         Task::Importers => importers::run(),
         Task::Valgrind => valgrind::run(),
-        Task::Instructions => python::prepare().and_then(|()| python::report("instructions", &[])),
+        Task::Instructions => python::prepare().and_then(|()| python::report(&["instructions"])),
         Task::Release(arguments) => release::run(&arguments),
         Task::Test(arguments) => test::run(arguments),
     };

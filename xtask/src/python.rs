@@ -1,7 +1,6 @@
 //! The Python environment `.venv`, with exactly what `requirements.txt` lists.
 
 use std::env::consts::EXE_SUFFIX;
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -23,9 +22,9 @@ pub fn test(tests: &[&str], component: &Path) -> Result<()> {
         .env("RELAY_CONTACT_FMU", component))
 }
 
-/// Runs a task of the package `report` with its arguments.
-pub fn report(task: &str, arguments: &[OsString]) -> Result<()> {
-    run(python().args(["-m", "report", task]).args(arguments))
+/// Runs a task of the package `report` with its options.
+pub fn report(arguments: &[&str]) -> Result<()> {
+    run(python().args(["-m", "report"]).args(arguments))
 }
 
 /// Creates the environment, unless it exists with the same requirements. Where another stage does so, waits for it.

@@ -47,7 +47,7 @@ pub fn run(arguments: Arguments) -> Result<()> {
         }
         // Of what both have left.
         if_installed("report", report::has_chromium(), report::CHROMIUM_MISSING, || {
-            python::report("report", &["--quick".into()])?;
+            python::report(&["report", "--quick"])?;
             python::test(&["report"], &fmu::path())
         })
     })
