@@ -80,9 +80,9 @@ def write(main: list[Section], appendix: list[Section], quick: bool) -> Path:
     description = Component().description
     environment = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True)
     environment.filters["markdown"] = MARKDOWN.renderInline
-    style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
+    style, script = (Path(__file__).with_name(name).read_text(encoding="utf-8") for name in ("style.css", "wider.js"))
     page = environment.get_template("page.html").render(
-        description=description, main=main, appendix=appendix, quick=quick, style=style
+        description=description, main=main, appendix=appendix, quick=quick, style=style, script=script
     )
     path = folder(quick) / "index.html"
     path.write_text(page, encoding="utf-8")

@@ -24,14 +24,19 @@ QUICK = OUT / "report-quick/index.html"
 WINDOWS = {"desktop": (1280, False), "phone": (390, True)}
 
 
+@pytest.fixture(scope="module", params=WINDOWS)
+def window(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
 def opened(browser: Browser, window: str) -> Page:
     width, phone = WINDOWS[window]
     return empty_page(browser, width, dark=phone, touch=phone)
 
 
-@pytest.fixture(scope="module", params=WINDOWS)
-def report(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
-    page = opened(browser, request.param)
+@pytest.fixture(scope="module")
+def report(browser: Browser, window: str) -> Iterator[Page]:
+    page = opened(browser, window)
     heard: list[str] = []
     page.on("console", lambda message: heard.append(message.text))
     page.on("pageerror", lambda error: heard.append(str(error)))
@@ -39,18 +44,16 @@ def report(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
     page.goto(QUICK.as_uri())
     assert heard == [QUICK.as_uri()]
     yield page
-    page.screenshot(path=QUICK.with_name(f"{request.param}.png"), full_page=True)
+    page.screenshot(path=QUICK.with_name(f"{window}.png"), full_page=True)
     page.close()
 
 
-@pytest.fixture(scope="module", params=WINDOWS)
-def documentation(
-    browser: Browser, request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Page]:
+@pytest.fixture(scope="module")
+def documentation(browser: Browser, window: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
     folder: Path = tmp_path_factory.mktemp("component")
     with zipfile.ZipFile(fmu_path()) as archive:
         archive.extractall(folder)
-    page = opened(browser, request.param)
+    page = opened(browser, window)
     page.goto((folder / "documentation/index.html").as_uri())
     yield page
     page.close()
@@ -114,14 +117,43 @@ def test_links_lead_somewhere(report: Page) -> None:
     assert [link for link in links if not link.startswith(("#", "http:", "https:"))] == []
 
 
-def test_a_table_shows_all_columns_or_says_that_there_are_more(report: Page) -> None:
-    tables = report.eval_on_selector_all(
-        ".scroll",
-        """tables => tables.map(table =>
-            [table.scrollWidth > table.clientWidth, getComputedStyle(table, "::before").content.includes("scroll")])""",
+def test_a_table_shows_all_columns_or_says_that_there_are_more(report: Page, documentation: Page) -> None:
+    for page in (report, documentation):
+        tables = page.eval_on_selector_all(
+            ".scroll:has(table)",
+            """tables => tables.map(table => [
+                table.scrollWidth > table.clientWidth,
+                getComputedStyle(table, "::before").content.includes("scroll"),
+            ])""",
+        )
+        assert tables
+        assert [pair for pair in tables if pair[0] != pair[1]] == []
+
+
+def test_all_columns_of_the_variables_are_seen_on_a_desktop(documentation: Page, window: str) -> None:
+    wide = documentation.eval_on_selector_all(
+        ".scroll", "all => all.filter(each => each.scrollWidth > each.clientWidth).length"
     )
-    assert tables
-    assert [pair for pair in tables if pair[0] != pair[1]] == []
+    assert (wide > 0) == (window == "phone")
+
+
+def test_a_printed_page_is_cut_off_nowhere(report: Page, documentation: Page) -> None:
+    for page in (report, documentation):
+        before = page.viewport_size
+        assert before is not None
+        # Between the margins of A4, in pixels.
+        page.set_viewport_size({"width": 700, "height": 1000})
+        page.emulate_media(media="print")
+        cut = page.eval_on_selector_all(
+            "table, pre, svg, img",
+            "all => all.filter(each => each.getBoundingClientRect().right > 701).map(each => each.textContent)",
+        )
+        page.emulate_media(media="screen")
+        page.set_viewport_size(before)
+        assert cut == []
+
+
+def test_no_cell_of_the_report_is_wider_than_its_column(report: Page) -> None:
     wide = "cells => cells.filter(cell => cell.scrollWidth > cell.clientWidth + 1).map(cell => cell.textContent)"
     assert report.eval_on_selector_all("td, th", wide) == []
 

@@ -16,11 +16,22 @@ use self::block::block;
 use self::description::{Variable, variables};
 use crate::variant::Variant;
 
-/// That of the report.
+/// Those of the report.
 const STYLE: &str = include_str!("../../../report/style.css");
+const SCRIPT: &str = include_str!("../../../report/wider.js");
 
 /// Sections of the README that the page repeats.
 const SECTIONS: [&str; 2] = ["Limits of validity", "Source"];
+
+/// Headings of the other parts of the page, and which variables are below the first ones.
+const CAUSALITIES: [(&str, &str); 4] = [
+    ("Inputs", "input"),
+    ("Outputs", "output"),
+    ("Calculated parameters", "calculatedParameter"),
+    ("Parameters", "parameter"),
+];
+const CHOICES: &str = "Choices";
+const SPRING_FILES: &str = "Spring files";
 
 /// The page as HTML.
 pub fn page(variant: &Variant) -> Result<String> {
@@ -35,6 +46,9 @@ pub fn page(variant: &Variant) -> Result<String> {
     let sections = SECTIONS.map(|title| section(&readme, title).map(|text| (title, markdown(text))));
     let mut enumerations: Vec<_> = document.descendants().filter(|node| node.has_tag_name("Enumeration")).collect();
     enumerations.retain(Node::has_children);
+    let choices_or_none = (!enumerations.is_empty()).then_some(CHOICES);
+    let titles =
+        CAUSALITIES.iter().map(|(title, _)| *title).chain(choices_or_none).chain(SECTIONS).chain([SPRING_FILES]);
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -52,27 +66,29 @@ pub fn page(variant: &Variant) -> Result<String> {
                 @if let Some((file, _)) = &variant.spring {
                     p { "This component carries the spring of " a href="#spring" { (file) } ", the start value of " code { "beam.file" } "." }
                 }
+                nav { ul { @for title in titles { li { a href=(format!("#{}", anchor(title))) { (title) } } } } }
                 (scroll("The component as a block", &block(name, &variables)))
-                @for (title, causality) in [("Inputs", "input"), ("Outputs", "output"),
-                    ("Calculated parameters", "calculatedParameter"), ("Parameters", "parameter")] {
-                    h2 { (title) }
-                    (scroll(title, &table(&variables, causality)))
+                @for (title, causality) in CAUSALITIES {
+                    @let own: Vec<_> = variables.iter().filter(|variable| variable.causality == causality).collect();
+                    (heading(title))
+                    (scroll(title, &table(&own)))
                 }
                 @if !enumerations.is_empty() {
-                    h2 { "Choices" }
+                    (heading(CHOICES))
                     (scroll("Choices", &choices(&enumerations)))
                 }
                 @for section in sections {
                     @let (title, text) = section?;
-                    h2 { (title) }
+                    (heading(title))
                     (text)
                 }
                 @if let Some((file, text)) = &variant.spring {
                     h2 id="spring" { (file) }
                     (scroll(file, &html! { pre { code { (text) } } }))
                 }
-                h2 { "Spring files" }
+                (heading(SPRING_FILES))
                 (markdown(&springs))
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     };
@@ -97,6 +113,16 @@ fn markdown(text: &str) -> Markup {
     PreEscaped(html.replace("<table>", open).replace("</table>", close))
 }
 
+/// A heading to which the contents lead.
+fn heading(title: &str) -> Markup {
+    html! { h2 id=(anchor(title)) { (title) } }
+}
+
+/// The part of the address that leads to a heading.
+fn anchor(title: &str) -> String {
+    title.to_lowercase().replace(' ', "-")
+}
+
 /// What may be wider than the page, in a box that scrolls.
 fn scroll(label: &str, content: &Markup) -> Markup {
     html! { div.scroll role="region" tabindex="0" aria-label=(label) { (content) } }
@@ -107,23 +133,25 @@ fn attribute<'a>(node: Node<'a, '_>, name: &str) -> &'a str {
     node.attribute(name).unwrap_or("")
 }
 
-/// The variables of a causality. The start value of an enumeration is the choice's name.
-fn table(variables: &[Variable], causality: &str) -> Markup {
+/// Variables of one causality. The start value of an enumeration is the choice's name.
+fn table(variables: &[&Variable]) -> Markup {
+    // Outputs have neither.
+    let is_set = variables.iter().any(|variable| variable.value.has_attribute("start"));
     html! {
         table {
-            tr { th { "name" } th { "type" } th { "unit" } th { "causality" } th { "start" } th { "min" } th { "max" } th { "description" } }
-            @for variable in variables.iter().filter(|variable| variable.causality == causality) {
+            tr { th { "name" } th { "description" } th { "unit" } @if is_set { th.number { "start" } th.number { "range" } } th { "type" } }
+            @for variable in variables {
                 @let value = variable.value;
                 @let start = attribute(value, "start");
                 tr {
                     td { code { (variable.name) } }
-                    td { @if variable.kind == "Enumeration" { (attribute(value, "declaredType")) } @else { (variable.kind) } }
-                    td { (variable.unit) }
-                    td { (causality) }
-                    td { (variable.choice(start).unwrap_or(start)) }
-                    td { (attribute(value, "min")) }
-                    td { (attribute(value, "max")) }
                     td { (variable.description) }
+                    td { (variable.unit) }
+                    @if is_set {
+                        td.number { (variable.choice(start).unwrap_or(start)) }
+                        td.number { @if value.has_attribute("min") { (attribute(value, "min")) " to " (attribute(value, "max")) } }
+                    }
+                    td { @if variable.kind == "Enumeration" { (attribute(value, "declaredType")) } @else { (variable.kind) } }
                 }
             }
         }
@@ -181,17 +209,19 @@ mod tests {
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);
         }
         for title in SECTIONS {
-            assert!(page.contains(&format!("<h2>{title}</h2>")), "{title}");
+            assert!(page.contains(&format!("<h2 id=\"{}\">{title}</h2>", anchor(title))), "{title}");
         }
-        assert!(page.contains("<td>m</td><td>parameter</td><td>0.0155</td><td>1e-3</td><td>0.2</td><td>Free length"));
-        assert!(page.contains("<td>AxialForceKind</td><td></td><td>parameter</td><td>None</td>"));
-        assert!(page.contains("<h2>Choices</h2>") && !page.contains("This component carries"));
+        assert!(page.contains(
+            "</td><td>m</td><td class=\"number\">0.0155</td><td class=\"number\">1e-3 to 0.2</td><td>Real</td>"
+        ));
+        assert!(page.contains("<td class=\"number\">None</td><td class=\"number\"></td><td>AxialForceKind</td>"));
+        assert!(page.contains(">Choices</h2>") && !page.contains("This component carries"));
         // The format of spring files, with its tables and examples, and no link out of the archive.
         assert!(page.contains("<td><code>clamp_stiffness</code></td>") && page.contains("[[segment]]"));
-        let links = page.split("href=\"").skip(1);
-        let outside: Vec<_> =
-            links.filter(|link| !link.starts_with("http") && !link.starts_with("licenses/license.txt")).collect();
-        assert!(outside.is_empty(), "{outside:?}");
+        let links = page.split("href=\"").skip(1).filter_map(|link| link.split('"').next());
+        for link in links.filter(|link| !link.starts_with("http") && *link != "licenses/license.txt") {
+            assert!(link.strip_prefix('#').is_some_and(|id| page.contains(&format!("id=\"{id}\""))), "{link}");
+        }
         Ok(())
     }
 
@@ -200,14 +230,10 @@ mod tests {
         let path = root().join("scenes/springs/tapered-cube.toml");
         let page = page(&Variant::new(true, Some(&path))?)?;
         assert!(page.contains("<h1>RelayContact-plain-tapered-cube "));
-        assert!(!page.contains("<h2>Choices</h2>") && !page.contains("Kind<"));
-        assert!(
-            page.contains(
-                "<td>Real</td><td></td><td>parameter</td><td>2</td><td>1</td><td>4</td><td>Source of the axial"
-            )
-        );
+        assert!(!page.contains("Choices") && !page.contains("Kind<"));
+        assert!(page.contains("<td class=\"number\">2</td><td class=\"number\">1 to 4</td><td>Real</td>"));
         assert!(page.contains(": 1 FromPreload, 2 None, 3 FromDeflection, 4 Prescribed</td>"));
-        assert!(page.contains("<td>String</td><td></td><td>parameter</td><td>tapered-cube.toml</td>"));
+        assert!(page.contains("<td class=\"number\">tapered-cube.toml</td><td class=\"number\"></td><td>String</td>"));
         let spring = std::fs::read_to_string(path)?;
         let first = spring.lines().find(|line| line.starts_with("length")).context("no length")?;
         assert!(
