@@ -129,6 +129,6 @@ def logarithmic(axes: Axes, axis: Axis, letter: str) -> None:
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
     axis.set_minor_formatter(NullFormatter())
-    if decades < 4.5:
+    if decades < 4.5 and high < 1e5:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5) if decades < 3 else (1,)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

@@ -98,7 +98,7 @@ def figure(points: list[Thresholds], levels: dict[str, Sine]) -> Figure:
         own = np.sort([*frequencies, test.corner])
         own = own[(own >= test.band[0]) & (own <= test.band[1])]
         curves.append(Curve(name, own, test.amplitude(own) / G, "dashed", colour))
-    x, y = "frequency / Hz", "amplitude of the base acceleration / g"
+    x, y = "frequency / Hz", "base acceleration, amplitude / g"
     return Figure("opening-map", "Base acceleration that opens the contact", x, y, curves, "xy")
 
 
