@@ -291,6 +291,18 @@ def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
     assert np.array(point.get_xdata()).tolist() == [sine.margin]
 
 
+def test_no_legend_of_a_figure_is_cut_off(paper: Assessment) -> None:
+    short = [replace(each, models=[replace(each.first, test="A")]) for each in paper if each.judged][:2]
+    figures = plots.position_figures(list(paper), MILITARY.contacts) + plots.position_figures(short, MILITARY.contacts)
+    for figure in figures:
+        figure.draw_without_rendering()
+    legends = [(figure, axes.get_legend()) for figure in figures for axes in figure.axes]
+    texts = [(figure, text) for figure, legend in legends if legend for text in legend.get_texts()]
+    ends = [(text.get_window_extent().x1, figure.bbox.x1) for figure, text in texts]
+    assert ends
+    assert [pair for pair in ends if pair[0] > pair[1]] == []
+
+
 def test_the_result_is_a_table_and_a_page(paper: Assessment) -> None:
     """Also in a notebook, which shows the page."""
     table, sine = paper.table, paper["vibration (sine)"]

@@ -35,7 +35,7 @@ WIDTH = 8.27  # inches: a page of A4
 LEFT, RIGHT, BOTTOM, TOP = 0.6, 0.06, 0.45, 0.27  # inches beside panels, of labels and titles
 OFF = 0.17  # inches, of a label from the edge of the figure
 BETWEEN = 0.34  # inches from panel to panel
-KEY = 0.45  # inches, of a legend beside its texts
+KEY = 0.55  # inches, of a legend beside its texts
 BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
 
 SHALLOWEST = 1e-8
@@ -308,13 +308,15 @@ def wear(figure: Figure, findings: list[Finding]) -> None:
     """Draw the margins over the overtravel, or the gap of a contact that is open alone."""
     first = findings[0].margin
     over, why = ("gap", "") if is_open(first) else ("overtravel", "; wear reduces it")
-    axes = beside(figure, [finding.named for finding in findings], f"Margins by linear response over the {over}{why}")
+    present = "present"
+    labels = [present, *(finding.named for finding in findings)]
+    axes = beside(figure, labels, f"Margins by linear response over the {over}{why}")
     for number, finding in enumerate(findings):
         own = finding.margin.wear
         style = styled(number, len(own["margin"])) | {"markevery": 1}
         axes.plot(1e3 * np.array(own["overtravel"]), own["margin"], label=finding.named, **style)
     axes.axhline(1.0, color=GREY, linewidth=1)
-    axes.axvline(1e3 * first.overtravel, color=GREY, linestyle=":", label="present")
+    axes.axvline(1e3 * first.overtravel, color=GREY, linestyle=":", label=present)
     axes.set(xlabel=f"{over} [mm]", ylabel="margin", ylim=(0, None))
     axes.legend(**BESIDE)
 
