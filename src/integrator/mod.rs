@@ -193,16 +193,14 @@
 //!
 //! `solver.forceError` says what the error may be by now ([`force_error`](crate::force_error)): by the largest error that a step has
 //! added, by a deviation of the motion that is carried along once a contact has opened or closed ([`deviation`]), and by what the modes
-//! left out do ([`resolution`](crate::beam::resolution)). With inputs that jump at each of thousands of communication steps the errors
-//! of as many steps add up, and it is too small for a third of them.
+//! left out do ([`resolution`](crate::beam::resolution)). How often it is above the error is in docs/accuracy.md.
 //!
 //! # Files
 //!
 //! A communication step goes down through these: [`communication_step`], [`steps`] (one after the other), [`step_end`] (where one
 //! ends: at an event), [`stepper`] (one on trial: computed, judged, committed), [`collocation`]. [`step_length`]: what the next step is
-//! to be. [`workspace`]: room
-//! made once, so that no step allocates. [`State`](crate::state::State) and [`motion`] are all that moves: plain numbers, a saved state
-//! is a copy. The kernel of a step is compiled twice, for any processor and for AVX2 with fused multiply-add
+//! to be. [`workspace`]: room made once, so that no step allocates. [`State`](crate::state::State) and [`motion`] are all that moves:
+//! plain numbers, a saved state is a copy. The kernel of a step is compiled twice, for any processor and for AVX2 with fused multiply-add
 //! ([`simd`](crate::math::simd)).
 
 pub mod accuracy;
