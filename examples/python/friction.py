@@ -41,7 +41,7 @@ RISE, SETTLED = 5e-3, 25e-3  # s: of the rise, and until the motion of the weake
 WATCHED = 4  # periods
 TRAVEL, SLOW = 1e-4, 0.2  # m and s: of the fixed contact to and fro, and its period
 # What is reported of connectors: a few micrometres to 100 um (Electrical Contacts, ed. P. G. Slade, 2nd edition, CRC
-# Press, section 7.3).
+# Press, section 7.3.1).
 FRETTING = (2.0, 100.0)  # um
 
 
