@@ -109,20 +109,36 @@ static fmi2Status run(fmi2Component contact, double amplitude, double duration, 
     return fmi2Terminate(contact);
 }
 
+/* Whether a text is a number, which it gives. */
+static int read_number(const char *text, double *value) {
+    char *end;
+    *value = strtod(text, &end);
+    return end != text && *end == '\0';
+}
+
 int main(int argc, char **argv) {
     const fmi2CallbackFunctions callbacks = {logger, NULL, NULL, NULL, NULL};
-    const double amplitude = argc > 1 ? atof(argv[1]) : 400.0, duration = argc > 2 ? atof(argv[2]) : 0.02;
+    double numbers[] = {400.0, 0.02}; /* m/s2, s */
     const char *path = argc > 3 ? argv[3] : "out/embed-c.csv";
-    FILE *table = fopen(path, "w");
+    FILE *table;
     fmi2FMUstate saved = NULL;
     fmi2Status status = fmi2Error;
+    fmi2Component contact;
+    int k;
+
+    for (k = 0; k < 2 && k + 1 < argc; ++k) {
+        if (!read_number(argv[k + 1], &numbers[k])) {
+            fprintf(stderr, "%s: not a number\n", argv[k + 1]);
+            return 1;
+        }
+    }
+    table = fopen(path, "w");
     /* A library of other variables than those of the header refuses its GUID. */
-    fmi2Component contact =
-        fmi2Instantiate("contact", fmi2CoSimulation, RELAY_CONTACT_GUID, NULL, &callbacks, fmi2False, fmi2False);
+    contact = fmi2Instantiate("contact", fmi2CoSimulation, RELAY_CONTACT_GUID, NULL, &callbacks, fmi2False, fmi2False);
     if (table == NULL) {
         perror(path);
     } else if (contact != NULL) {
-        status = run(contact, amplitude, duration, table, &saved);
+        status = run(contact, numbers[0], numbers[1], table, &saved);
         fmi2FreeFMUstate(contact, &saved);
     }
     fmi2FreeInstance(contact);

@@ -16,6 +16,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
+use std::process::ExitCode;
 
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
@@ -47,9 +48,20 @@ fn switches(contact: &Simulation) -> [f64; 2] {
     [RealOutput::ContactLastOpening, RealOutput::ContactLastClosing].map(|output| contact.real(output))
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    run().map_or_else(
+        |error| {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        },
+        |()| ExitCode::SUCCESS,
+    )
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<_> = env::args().skip(1).collect();
-    let number = |at: usize, default| arguments.get(at).map_or(Ok(default), |text| text.parse::<f64>());
+    let parsed = |text: &String| text.parse::<f64>().map_err(|_| format!("{text}: not a number"));
+    let number = |at: usize, default| arguments.get(at).map_or(Ok(default), parsed);
     let (amplitude, duration) = (number(0, 400.0)?, number(1, 0.02)?);
     let path = arguments.get(2).map_or("out/embed.csv", String::as_str);
 

@@ -6,17 +6,28 @@ use std::env;
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    run().map_or_else(
+        |error| {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        },
+        |()| ExitCode::SUCCESS,
+    )
+}
+
+fn run() -> Result<(), Box<dyn Error>> {
     let mut arguments = env::args().skip(1);
     let path = arguments.next().ok_or("usage: run_scene FILE [NAME=VALUE...]")?;
     let mut scene = SceneFile::read(Path::new(&path))?;
     for change in arguments {
-        let (name, value) = change.split_once('=').ok_or("expected NAME=VALUE")?;
+        let (name, value) = change.split_once('=').ok_or_else(|| format!("{change}: must be NAME=VALUE"))?;
         scene.set(name, value)?;
     }
 

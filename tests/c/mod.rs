@@ -98,11 +98,13 @@ fn a_small_vibration_gives_the_linear_response() {
 
 #[test]
 fn a_refused_value_ends_an_example_with_its_name_and_range() {
-    for mut program in [in_rust(), compiled("examples/embed.c")] {
-        let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused.csv");
-        let ran = program.args(["nan", "0.01"]).arg(table).output().unwrap();
-        let said = String::from_utf8_lossy(&ran.stderr);
-        assert!(!ran.status.success() && said.contains("base.acceleration"), "{said}");
+    for (acceleration, told) in [("nan", "base.acceleration = NaN m/s2: not allowed"), ("40o", "40o: not a number")] {
+        for mut program in [in_rust(), compiled("examples/embed.c")] {
+            let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused.csv");
+            let ran = program.args([acceleration, "0.01"]).arg(table).output().unwrap();
+            let said = String::from_utf8_lossy(&ran.stderr);
+            assert!(!ran.status.success() && said.contains(told), "{said}");
+        }
     }
 }
 
