@@ -255,7 +255,7 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
     for model in relay.models:
         # What `qualify` takes in place of what was found.
         if kept := sorted(model.parameters.keys() & names):
-            text = f"keeps its own {', '.join(kept)}, which was not identified: identify it by a file of its own"
+            text = f"keeps its own {', '.join(kept)}: it was not fitted to the data; identify it by a file of its own"
             notes.append(f"the model {model.name!r} of the relay's file {text}")
     whole = together / np.outer(sizes, sizes)
     return Identification(relay, path, found, missing, correlation, whole, fit.sets, fitted, curves, notes)
