@@ -124,7 +124,7 @@ class Figure:
 
 
 def logarithmic(axes: Axes, axis: Axis, letter: str) -> None:
-    """Make an axis logarithmic: over few decades with plain numbers, at 2 and 5 too."""
+    """Make an axis logarithmic: over few decades, up to 1e5, with plain numbers, at 2 and 5 too."""
     axes.set(**{f"{letter}scale": "log"})
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)

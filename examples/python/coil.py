@@ -9,7 +9,7 @@ this coil, with g_0 for armature.gapConstant and i_n^2 L_0 / (2 g_0) for armatur
 which coil.relativeCurrent is 1: here U / R.
 
 In a communication step the coil goes first, past an armature that keeps its velocity; then the component, whose input
-changes linearly from the current at the begin of the step to that at its end. Another circuit, or one of another tool,
+changes linearly from the current at the start of the step to that at its end. Another circuit, or one of another tool,
 takes the place of `Coil`: armature.gap and armature.velocity go to it, the current comes back.
 
 Operate time: from switching on to the first touch. Bounce at make: from there to the last closing before switching off.

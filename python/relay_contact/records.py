@@ -58,7 +58,7 @@ class Record:
                 "as it is"
             )
         if self.acceleration[0]:
-            told.append(f"before its begin the acceleration is taken as that there, {three(self.acceleration[0])} m/s²")
+            told.append(f"before the record the acceleration is its first value, {three(self.acceleration[0])} m/s²")
         return told
 
     @property
@@ -77,7 +77,7 @@ class Record:
         step, count = three(1e6 * self.coarsest), three(1 / (resonance * self.coarsest))
         told = f"steps of time of up to {step} µs, {count} in a period of the resonance at {three(resonance)} Hz: "
         if lost == 1:
-            return [f"{told}with fewer than {COARSE} a record does not show what shakes it, and is not passed"]
+            return [f"{told}fewer than {COARSE} do not show what excites it, and the test is not passed"]
         text = f"straight lines take up to {three(100 * lost)} % off a vibration there, and the interval begins lower"
         return [told + text] if lost > ATTENUATED else []
 

@@ -120,7 +120,7 @@ def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
     write_table(path, "time [s],a [g]", np.column_stack((time - time[0], values)), digits=17)
     test = history(path)
     assert [each for each in test.record.notes if "unequal" in each]
-    assert [each for each in test.record.notes if "before its begin" in each]
+    assert [each for each in test.record.notes if "before the record" in each]
     around, course = pieces(CALM, test.course(), 1.0), test.course()
     for piece in around:
         # At its place in the record.
@@ -182,7 +182,7 @@ def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.C
     lost = 100 * (1 - np.sinc(resonance / 6e3) ** 2)
     for name, told in (("rate 6000", f"{lost:.3g} % off a vibration there"), ("calm", "taken as s"),
                        ("rate 3000", "2.21 in a period of the resonance"),
-                       ("rate 1000", "with fewer than 4 a record does not show")):  # fmt: skip
+                       ("rate 1000", "fewer than 4 do not show what excites it")):  # fmt: skip
         (note,) = [note for note in found["notes"][name].split("; ") if told in note]
         assert f"{name}.csv: {note}\n" in printed
         assert f"{name}.csv: {note}</li>" in page
