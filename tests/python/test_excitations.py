@@ -159,6 +159,18 @@ def test_a_record_alone_is_a_test(tmp_path: Path) -> None:
     assert (tmp_path / "qualification.html").read_text(encoding="utf-8").count("<svg") == 5
 
 
+def test_records_of_one_name_are_refused(tmp_path: Path) -> None:
+    """What is found of a test is kept by its name: the second record would have the margin of the first."""
+    time = 2e-5 * np.arange(500)
+    for folder, level in (("calm", 1.0), ("rough", 10.0)):
+        (tmp_path / folder).mkdir()
+        rows = np.column_stack((time, level * np.sin(2e3 * time)))
+        write_table(tmp_path / folder / "road.csv", "time [s],a [g]", rows)
+    files: list[str | Path] = [tmp_path / "calm" / "road.csv", tmp_path / "rough" / "road.csv"]
+    with pytest.raises(RelayContactError, match=r"road.csv: given twice: not allowed"):
+        qualify("paper", history=files, out=tmp_path, component=COMPONENT)
+
+
 def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """One motion at several rates: no interval is above the margin of the finest; what is said of them is everywhere.
 

@@ -54,6 +54,12 @@ def qualify(
     asked = chosen(asked, tests or []) if standard else replace(asked, title="measured records", tests=())
     for file in history or []:
         asked = replace(asked, tests=(*asked.tests, *Recorded(file=str(file), unit=unit, rate=rate).tests(Path())))
+    names = [test.name for test in asked.tests]
+    for name in names:
+        # What is found of a test is kept by its name.
+        if names.count(name) > 1:
+            text = "given twice: not allowed, allowed is each name once; rename a file, or name it in a standard's"
+            raise RelayContactError(f"{name}: {text}")
     asked = replace(asked, contacts=asked.contacts.monitored(described.monitor))
     check_monitor(component, described, asked.contacts)
     count = len(asked.tests) * len(described.positions) * len(described.models) * (1 + len(described.axes))
