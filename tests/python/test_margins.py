@@ -128,9 +128,8 @@ def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:
     assert wrong == pytest.approx((exact[0] * 0.97, exact[1] * 1.03))
 
 
-@pytest.mark.parametrize("seed", [1, 5, 6, 7, 8])
-def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) -> None:
-    """With a tenth of the damping, so that its dips take turns: the surface alone is up to 5 % off at the lower end."""
+def recorded(seed: int) -> positions.Position:
+    """Return a relay with a tenth of the damping under a record of noise, so that its dips take turns."""
     relay = drawn(seed)
     (values,) = relay.positions.values()
     damping = 0.1 * float(values["beam.stiffnessDamping"])
@@ -139,8 +138,23 @@ def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) 
     spectrum, frequencies = np.fft.rfft(generator.standard_normal(len(time))), np.fft.rfftfreq(len(time), 5e-5)
     noise = np.fft.irfft(np.where((frequencies > 200) & (frequencies < 3000), spectrum, 0), len(time))
     record = Record(Path("record.csv"), "a", time, noise / noise.std() * 300)
-    test = History("record", "", READ, record=record, both=False, digest="")
-    position = placed(relay, test)
+    return placed(relay, History("record", "", READ, record=record, both=False, digest=""))
+
+
+def test_draws_of_a_test_do_not_depend_on_others_beside_it() -> None:
+    """A shock needs eight of all parameters, the record more: alone and beside it the shock has the same interval."""
+    position = recorded(8)
+    alone, both = (replace(position, tests=tests) for tests in ((SHOCK,), (*position.tests, SHOCK)))
+    draws = 1 + 2 * len(position.relay.uncertainty) + positions.FEWEST
+    assert len(both.surfaces["record"].values) > draws == len(alone.surfaces["shock"].values)
+    assert np.array_equal(both.surfaces["shock"].values, alone.surfaces["shock"].values)
+
+
+@pytest.mark.parametrize("seed", [1, 5, 6, 7, 8])
+def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) -> None:
+    """The surface alone is up to 5 % off at the lower end."""
+    position = recorded(seed)
+    (test,), relay = position.tests, position.relay
     surface = position.surfaces[test.name]
     scores = np.random.default_rng(7).standard_normal((1000, len(relay.uncertainty)))
 

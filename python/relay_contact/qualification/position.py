@@ -78,8 +78,8 @@ class Shared:
     """Responses of the relay as its file says, by part."""
     surfaces: dict[str, dict[str, statistics.Surface]] = field(default_factory=dict)
     """Logarithm of the margin of each test over the scores, by linear theory, by part."""
-    tried: dict[int, tuple[Values, dict[str, Response]]] = field(default_factory=dict)
-    """Parameters and responses of draws in which the component seeks levels, by their number."""
+    tried: dict[tuple[float, ...], tuple[Values, dict[str, Response]]] = field(default_factory=dict)
+    """Parameters and responses of draws in which the component seeks levels, by their scores."""
     worn: dict[float, dict[str, Response]] = field(default_factory=dict)
     """Responses over the overtravel (m), which the wear of the contacts takes away, or over the gap, by part."""
 
@@ -201,11 +201,12 @@ class Position:
 
     @property
     def surfaces(self) -> dict[str, statistics.Surface]:
-        """Logarithm of the margin of each test over the scores, by linear theory."""
+        """Logarithm of the margin of each test over the scores, by linear theory; each in as many draws as it needs."""
         if not self.shared.surfaces:
             # Known to all draws, which run beside each other.
             nominal = {each.part: each.specimen.response for each in self.parts}
             own = self.nominal
+            known: dict[str, dict[str, statistics.Surface]] = {part: {} for part in nominal}
 
             def margins(row: Array) -> list[list[float]]:
                 drawn = self.drawn(row)
@@ -213,23 +214,17 @@ class Position:
                 return [[each.linear(responses[each.part], test) for test in self.tests] for each in self.parts]
 
             draws = FEWEST
-            while not self.shared.surfaces:
+            while any(len(surfaces) < len(self.tests) for surfaces in known.values()):
                 scores = self.scores(draws)
                 # By part, test and draw.
                 found = np.moveaxis(np.array(side_by_side(margins, list(scores))), 0, -1)
-                known = {
-                    each.part: {
-                        test.name: statistics.Surface(scores, np.log(np.maximum(values, LOWEST)))
-                        for test, values in zip(self.tests, rows, strict=True)
-                    }
-                    for each, rows in zip(self.parts, found, strict=True)
-                }
-                every = [each for surfaces in known.values() for each in surfaces.values()]
-                if draws == DRAWS or all(
-                    each.error <= max(ROUGHLY, ENOUGH * float(np.std(each.values))) for each in every
-                ):
-                    self.shared.surfaces |= known
+                for surfaces, rows in zip(known.values(), found, strict=True):
+                    for test, values in zip(self.tests, rows, strict=True):
+                        each = statistics.Surface(scores, np.log(np.maximum(values, LOWEST)))
+                        if draws == DRAWS or each.error <= max(ROUGHLY, ENOUGH * float(np.std(each.values))):
+                            surfaces.setdefault(test.name, each)
                 draws = min(4 * draws, DRAWS)
+            self.shared.surfaces |= known
         return self.shared.surfaces[self.part]
 
     @cached_property
@@ -279,10 +274,11 @@ class Position:
         linear = float(np.exp(surface.values[number]))
         if not LOWEST * (1 + STILL) < linear < MOST * (1 - STILL):
             return expected
-        if number not in self.shared.tried:
+        draw = tuple(surface.scores[number])
+        if draw not in self.shared.tried:
             values = self.drawn(surface.scores[number])
-            self.shared.tried[number] = {**self.values, **values}, self.responses(values)
-        values, responses = self.shared.tried[number]
+            self.shared.tried[draw] = {**self.values, **values}, self.responses(values)
+        values, responses = self.shared.tried[draw]
         response, lasting = responses[self.part], self.specimen.lasting
         specimen = replace(self.specimen, values=values, response=response)
         if isinstance(test, Sine):
