@@ -32,7 +32,7 @@ SIGNS = {"Ohm": "Ω", "mOhm": "mΩ", "um": "µm", "us": "µs", "degC": "°C", "m
          "kg.m2": "kg m²", "Ohm.m": "Ω m", "N/um": "N/µm", "1": ""}  # fmt: skip
 
 KEPT: ContextVar[dict[str, str] | None] = ContextVar("warnings", default=None)
-"""Where warnings are kept of what runs beside others, by their kind; those of the rest are with the component."""
+"""Where the first warning of each kind is kept, of what runs beside others too."""
 
 SETTABLE = ("parameter", "input")
 LARGEST_REAL = sys.float_info.max
@@ -45,6 +45,17 @@ Array = NDArray[np.float64]
 Value = float | str
 """Value of a variable; a choice, such as that of effects.excitation, by its name; a file by its path."""
 Values = Mapping[str, Value]
+
+
+@contextmanager
+def warnings_kept() -> Iterator[dict[str, str]]:
+    """Give the first warning of each kind of what runs in this block, by its kind."""
+    kept: dict[str, str] = {}
+    before = KEPT.set(kept)
+    try:
+        yield kept
+    finally:
+        KEPT.reset(before)
 
 
 def sine(frequency: float, amplitude: float, rise: float = 0.0) -> dict[str, Value]:
@@ -123,8 +134,6 @@ class Component:
             folder = Path(mkdtemp())
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder: str = extract(str(self.path), str(folder), lambda name: not name.startswith("documentation/"))
-        self.warnings: dict[str, str] = {}
-        """The first warning of each kind since this was cleared, of all instances."""
         self.told: set[str] = set()
         self.idle: list[Reused] = []
         """Instances that no contact has at present."""
@@ -143,8 +152,8 @@ class Component:
         """Keep a warning, and tell it as a Python warning, once for all instances."""
         message = re.sub(r"^fmi2\w+: ", "", message)
         kind = DIFFERENCE.sub("", message)
-        kept = KEPT.get()
-        (self.warnings if kept is None else kept).setdefault(kind, message)
+        if (kept := KEPT.get()) is not None:
+            kept.setdefault(kind, message)
         if kind not in self.told:
             self.told.add(kind)
             warnings.warn(message, RelayContactWarning, stacklevel=3)

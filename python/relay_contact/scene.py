@@ -16,7 +16,7 @@ from pydantic import ConfigDict, Field
 from pydantic.alias_generators import to_camel
 from tqdm import tqdm
 
-from relay_contact.component import Array, Component, Contact, Value, nearest, units
+from relay_contact.component import Array, Component, Contact, Value, nearest, units, warnings_kept
 from relay_contact.files import RelayContactError, named, scenes
 from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
 from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, RATIOS, TIMES, Units
@@ -197,6 +197,17 @@ class Result(np.ndarray[tuple[int], np.dtype[np.void]]):
     units: dict[str, str]
     warnings: list[str]
 
+    def __reduce__(self) -> Any:  # noqa: ANN401
+        """Give units and warnings to copies in other processes, too."""
+        make, given, state = super().__reduce__()  # type: ignore[str-unpack]
+        return make, given, (state, vars(self))
+
+    def __setstate__(self, state: Any) -> None:  # noqa: ANN401
+        """Take what `__reduce__` gives."""
+        own, kept = state
+        super().__setstate__(own)
+        vars(self).update(kept)
+
     def __array_finalize__(self, source: Any) -> None:  # noqa: ANN401
         """Keep units and warnings."""
         self.units = getattr(source, "units", {})
@@ -243,19 +254,18 @@ def run(
     course = scene.table if inputs is None else courses(component, inputs)
     if twice := course.keys() & {component.settable(name) for name in changes}:
         raise RelayContactError(f"{', '.join(sorted(twice))}: given twice, as a constant and among the inputs")
-    names = [component.name(name) for name in (scene.outputs if outputs is None else outputs)]
+    names = list(dict.fromkeys(map(component.name, scene.outputs if outputs is None else outputs)))
     stop, step = scene.stop if stop is None else stop, scene.step if step is None else step
     scene = replace(scene, outputs=names, table=course, stop=stop, step=step)
     form = "{desc} {percentage:3.0f} %|{bar}| {n:.3g} of {total:.3g} ms"
-    component.warnings.clear()
-    with progress_bar(1e3 * scene.stop, form, progress is True, desc="simulated") as bar:
+    with warnings_kept() as warnings, progress_bar(1e3 * scene.stop, form, progress is True, desc="simulated") as bar:
         tell = progress if callable(progress) else lambda time: bar.update(1e3 * time - bar.n)
         result = simulated(scene, scene.points(), component, tell)
     fields = np.dtype([(name, np.float64) for name in ["time", *names]])
     table = unstructured_to_structured(result, fields).view(Result)
     shown = units(component.description)
     table.units = {"time": "s"} | {name: shown[name].si if name in shown else "" for name in names}
-    table.warnings = list(component.warnings.values())
+    table.warnings = list(warnings.values())
     return table
 
 
@@ -273,7 +283,7 @@ def progress_bar(total: float | None, form: str, shown: bool, **more: Any) -> An
 
 def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, Array]:
     """Return inputs over the column `time`, checked."""
-    if not given:
+    if not len(given.keys()):
         return {}
     if "time" not in given:
         raise RelayContactError('inputs: the column "time" is missing')
@@ -281,8 +291,11 @@ def courses(component: Component, given: Mapping[str, ArrayLike]) -> dict[str, A
     columns = component.settables({name: values for name, values in given.items() if name != "time"}, "input")
     for name, values in {"time": given["time"], **columns}.items():
         try:
+            own: Any = np.ma.asarray(values)
+            # Not differences of times, in units of their own.
+            own = own.astype(float, casting="same_kind" if own.dtype.kind in "mMc" else "unsafe")
             # What is masked is missing.
-            found[name] = np.ma.filled(np.ma.asarray(values, dtype=float), np.nan)
+            found[name] = np.ma.filled(own, np.nan)
         except (TypeError, ValueError) as error:
             raise RelayContactError(f"inputs: {name}: not allowed, allowed are numbers") from error
     for name, column in found.items():

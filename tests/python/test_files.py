@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import tomli_w
 from matplotlib.figure import Figure
@@ -396,6 +397,8 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
         ({"inputs": {"time": [0.0], "base.acceleration": np.ma.masked_equal([9.0], 9.0)}}, "acceleration: .*finite"),
         ({"inputs": {"time": [], "base.acceleration": []}}, "finite numbers"),
         ({"inputs": {"time": ["a"], "base.acceleration": [0.0]}}, "time: not allowed, allowed are numbers"),
+        ({"inputs": {"time": pd.to_timedelta([0], "s"), "base.acceleration": [0.0]}}, "time: .* allowed are numbers"),
+        ({"inputs": {"time": [0.0], "base.acceleration": [1j]}}, "base.acceleration: not allowed, allowed are numbers"),
         ({"inputs": {"time": [0.0], "tip.mass": [1e-5]}}, "tip.mass: not an input"),
         ({"inputs": {"time": [9.0, 9.1], "base.acceleration": 2 * [0.0]}}, "time = 9 to 9.1 s: not allowed, .* 0 to 0"),
         ({"inputs": {"time": [-2.0, -1.0], "base.acceleration": 2 * [0.0]}}, "time = -2 to -1 s: not allowed"),

@@ -1,5 +1,6 @@
 """Many scenes at once: what each gives alone, in their order, whatever the others do."""
 
+import pickle
 import re
 import threading
 import time
@@ -8,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from fmpy.fmi1 import FMICallException
 
 from component import COMPONENT
-from relay_contact import RelayContactError, RelayContactWarning, Scene, Values, run, run_many, side_by_side
-from relay_contact.component import KEPT, Component, FMU2Functions
+from relay_contact import RelayContactError, RelayContactWarning, Result, Scene, Values, run, run_many, side_by_side
+from relay_contact.component import Component, FMU2Functions, warnings_kept
 from relay_contact.many import SHARE, Case, cores
 
 CHATTER = "chatter-41g"
@@ -108,9 +110,11 @@ def test_an_instance_that_cannot_be_reset_is_freed_and_has_its_row(monkeypatch: 
 
 def test_a_table_made_in_python_is_that_of_run() -> None:
     table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
-    scene = Scene("pressed", 1e-3, 1e-5, ["contact.force"], {}, table)
+    scene = Scene("pressed", 1e-3, 1e-5, 2 * ["contact.force"], {}, table)
     pressed = run(scene, component=COMPONENT)["contact.force"]
     assert pressed[-1] > 1.2 * pressed[0]
+    frame: Any = pd.DataFrame(table)
+    assert np.array_equal(run(scene, inputs=frame, component=COMPONENT)["contact.force"], pressed)
     assert run_many([scene], component=COMPONENT)["contact.force"][0] == pressed[-1]
 
 
@@ -160,6 +164,22 @@ def test_a_warning_stands_in_its_row() -> None:
         table = run_many(["tapered-spring", ("tapered-spring", unused)], component=COMPONENT)
     assert ["beam.thickness = 0.000123 m: not used" in text for text in table["warning"]] == [False, True]
     assert not table["error"].any()
+
+
+def test_a_run_keeps_its_warnings_whatever_runs_meanwhile() -> None:
+    """Copies in other processes have them, too."""
+    unused: Any = {"beam.thickness": 1.23e-4}
+    meanwhile: list[Result] = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RelayContactWarning)
+        result = run("tapered-spring", component=COMPONENT, stop=1e-3, **unused,
+                     progress=lambda _: meanwhile.append(run(CHATTER, component=COMPONENT, stop=1e-5)))  # fmt: skip
+    assert meanwhile[0].warnings == []
+    (told,) = result.warnings
+    assert "beam.thickness = 0.000123 m: not used" in told
+    copied = pickle.loads(pickle.dumps(result))
+    assert (copied.warnings, copied.units) == (result.warnings, result.units)
+    assert np.array_equal(copied, result)
 
 
 def test_the_lock_of_the_interpreter_is_released_while_the_component_steps() -> None:
@@ -237,8 +257,6 @@ def test_an_error_of_own_work_or_of_what_is_told_ends_it(kind: type[Exception], 
 
 def test_warnings_are_kept_in_the_order_of_the_items() -> None:
     """Of a kind the first item's, though the second is done before."""
-    kept: dict[str, str] = {}
-    before = KEPT.set(kept)
 
     def work(item: float) -> None:
         time.sleep(item)
@@ -246,8 +264,6 @@ def test_warnings_are_kept_in_the_order_of_the_items() -> None:
             warnings.simplefilter("ignore", RelayContactWarning)
             COMPONENT.warn(f"slept {item} s")
 
-    try:
+    with warnings_kept() as kept:
         side_by_side(work, [0.05, 0.0], 2)
-    finally:
-        KEPT.reset(before)
     assert list(kept.values()) == ["slept 0.05 s"]

@@ -1,12 +1,11 @@
 """A test in a position of the coil, by one of the models: its margin, its verdict, and what the figures show."""
 
-from contextvars import copy_context
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from relay_contact.component import KEPT, Array
+from relay_contact.component import Array, warnings_kept
 from relay_contact.figures import GRAVITY as G
 from relay_contact.figures import three
 from relay_contact.qualification import synthesis
@@ -357,10 +356,8 @@ def density(sampled: Array, frequency: Array, spacing: float) -> list[float]:
 
 def tested(position: Position, test: Test, points: int) -> Finding:
     """Run a test in a position of the coil, by one of the models; with what the component warned of."""
-    warnings: dict[str, str] = {}
-    context = copy_context()
-    context.run(KEPT.set, warnings)
-    finding = context.run(judged, position, test, points)
+    with warnings_kept() as warnings:
+        finding = judged(position, test, points)
     return replace(finding, warnings=list(warnings.values()))
 
 
