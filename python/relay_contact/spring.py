@@ -80,7 +80,7 @@ def text_of(file: str, factors: Mapping[str, float], modulus: float | None = Non
 
     Segments without Young's modulus get this one (Pa), if there is one.
     """
-    content = tomlkit.parse(Path(file).read_text(encoding="utf-8"))
+    content = tomlkit.parse(Path(file).read_text(encoding="utf-8-sig"))
     if modulus is not None:
         for segment in content.get("segment", []):
             segment.setdefault(MODULUS, modulus)

@@ -48,10 +48,12 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
 def test_an_entry_is_that_of_the_file(tmp_path: Path, name: str, old: str, new: str) -> None:
     text = SEGMENTS.read_text()
     assert old in text
-    edited = tmp_path / "edited.toml"
+    edited, marked = (tmp_path / f"{each}.toml" for each in ("edited", "marked"))
     edited.write_text(text.replace(old, new))
+    # As some editors begin a file in UTF-8.
+    marked.write_text(text, encoding="utf-8-sig")
     expected = frequency({"beam.file": str(edited)})
-    assert frequency({"beam.file": str(SEGMENTS), name: 1.1}) == pytest.approx(expected, rel=1e-12)
+    assert frequency({"beam.file": str(marked), name: 1.1}) == pytest.approx(expected, rel=1e-12)
 
 
 def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:

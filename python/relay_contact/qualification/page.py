@@ -156,7 +156,7 @@ def springs(relay: Relay) -> list[tuple[str, str]]:
         Path(str(values[name])).name: content
         for values in columns_of(relay).values() for name, content in springs_of(values).items()
     }  # fmt: skip
-    return [(name, content.decode()) for name, content in files.items()]
+    return [(name, content.decode("utf-8-sig")) for name, content in files.items()]
 
 
 def position_context(assessment: Assessment, component: Component, name: str, values: Values) -> dict[str, Any]:
