@@ -291,8 +291,13 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     assert "the data tell it only together with" in result.missing[label]
     # With the true mass the frequency tells the stiffness: of a beam with a rivet, by the exact solution.
     relay = tmp_path / "relay.toml"
-    relay.write_text(f"parameters.tip.mass = {measured.TRUTH['tip.mass']}\nuncertainty.tip.mass = 0.1\n")
-    result = found(ring, relay=relay, parameters=names)
+    relay.write_text(
+        f"parameters.tip.mass = {measured.TRUTH['tip.mass']}\nuncertainty.tip.mass = 0.1\n"
+        "uncertainty.contact.overtravel = 0.05\n"
+        "correlation = { names = ['contact.overtravel', 'tip.mass'], matrix = [[1.0, 0.6], [0.6, 1.0]] }\n",
+        encoding="utf-8-sig",
+    )
+    result = found(ring, relay=relay, parameters=names, out=tmp_path / "found")
     assert list(result.missing) == ["tip.mass"]
     assert holds(result, "beam.youngsModulus", measured.TRUTH["beam.youngsModulus"])
     # It is uncertain by as much as the mass that moves is: frequency 293 Hz, by 10 % of the rivet.
@@ -303,6 +308,21 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     assert result["beam.youngsModulus"].by_others["tip.mass"] == pytest.approx(moved, rel=0.05)
     assert result["beam.youngsModulus"].half > result["beam.youngsModulus"].by_others["tip.mass"]
     assert f"beam.youngsModulus: of its interval, tip.mass {100 * moved:.2g} % comes" in " ".join(silent(result))
+    # `qualify` draws both from the written file: the frequency that was measured is that of each draw.
+    written = Relay.read(tmp_path / "found" / "relay.toml", COMPONENT)
+    drawn = list(written.uncertainty)
+    root = written.correlation.root(drawn)
+    assert (root @ root)[drawn.index("contact.overtravel"), drawn.index("tip.mass")] == pytest.approx(0.6)
+    (values,) = written.positions.values()
+    halves = [written.parts(COMPONENT)[name] for name in drawn]
+    drawings: list[Values] = [
+        {name: COMPONENT.value(values, name) * part for name, part in zip(drawn, 1 + row * halves / 1.96, strict=True)}
+        for row in (np.zeros(len(drawn)), *root)
+    ]  # fmt: skip
+    springs = (Reference({**values, **each, **measured.AWAY}) for each in drawings)
+    squares = [each.modes().omega_squared.min() for each in springs]
+    # To the scatter of the record; by the mass alone it would be half of what moved.
+    assert squares[1:] == pytest.approx([squares[0]] * len(drawn), rel=0.1 * moved)
     # And the other way around: what is known from elsewhere is not sought.
     relay.write_text(relay.read_text().replace("tip.mass", names[0]).replace(str(measured.TRUTH["tip.mass"]), "1.2e11"))
     assert list(found(ring, relay=relay, parameters=names).missing) == [names[0]]

@@ -49,7 +49,7 @@ def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: AN
 
 def text(result: Identification, spring: str) -> str:
     """Give the text of the relay's file; `spring` is the name of the spring file beside it, if it has one."""
-    content: Any = tomlkit.parse(result.path.read_text(encoding="utf-8"))
+    content: Any = tomlkit.parse(result.path.read_text(encoding="utf-8-sig"))
     for name in ("parameters", "uncertainty"):
         if name not in content:
             content.append(name, tomlkit.table())
@@ -67,7 +67,8 @@ def text(result: Identification, spring: str) -> str:
     names, matrix = correlations(result)
     content["correlation"] = tomlkit.table()
     content["correlation"]["names"] = names
-    content["correlation"]["matrix"] = [[round(each, 4) for each in row] for row in matrix]
+    # With fewer digits strong correlations might not be possible together.
+    content["correlation"]["matrix"] = [[round(each, 8) for each in row] for row in matrix]
     if spring:
         for table in (content["parameters"], *(each.get("parameters", {}) for each in tables.values())):
             if has({"parameters": table}, "beam.file"):
@@ -76,10 +77,10 @@ def text(result: Identification, spring: str) -> str:
 
 
 def correlations(result: Identification) -> tuple[list[str], list[list[float]]]:
-    """Return names and coefficients of correlation of what was found; of a parameter in several positions the first."""
+    """Return names and coefficients of correlation of all that is uncertain; of one in several positions the first."""
     first: dict[str, int] = {}
-    for place, each in enumerate(result.found):
-        first.setdefault(each.unknown.name, place)
+    for place, name in enumerate([*(each.unknown.name for each in result.found), *result.others]):
+        first.setdefault(name, place)
     chosen = list(first.values())
     matrix = result.whole[np.ix_(chosen, chosen)]
     matrix = (matrix + matrix.T) / 2

@@ -63,8 +63,10 @@ class Identification:
     """Parameters that the data do not determine, and why."""
     correlation: Array
     """Of those found, by the scatter of the measurements."""
+    others: list[str]
+    """Parameters that are not sought, but uncertain in the relay's file."""
     whole: Array
-    """The same with what parameters that are not sought contribute: with the intervals, the covariance of all."""
+    """Of those found and these, with what these contribute: with the intervals, the covariance of all."""
     sets: list[Set]
     fitted: list[Array]
     """The model's values for each measurement."""
@@ -233,19 +235,23 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
     halves = fit.halves() if fit.unknowns else np.zeros(0)
     names = {unknown.name for unknown in fit.unknowns}
     parts = relay.parts(fit.laboratory.component)
-    others = {name: part for name, part in parts.items() if name not in names and part}
-    shifts = {name: fit.shifts(name, part) for name, part in others.items()} if fit.unknowns else {}
+    others = [name for name, part in parts.items() if name not in names and part]
+    # By how much each of these at its end moves what was found, and by what is independent of them.
+    shifts = np.zeros((len(fit.unknowns), len(others)))
+    for number, name in enumerate(others if fit.unknowns else []):
+        shifts[:, number] = fit.shifts(name, parts[name])
+    root = relay.correlation.root(others)
+    moved = shifts @ root
+    correlation = fit.correlation if fit.unknowns else np.zeros((0, 0))
+    together = correlation * np.outer(halves, halves) + moved @ moved.T
+    sizes = np.sqrt(np.diag(together))
     found = []
     for number, unknown in enumerate(fit.unknowns):
-        own = {name: abs(float(shift[number])) for name, shift in shifts.items()}
-        half = float(np.sqrt(halves[number] ** 2 + sum(each**2 for each in own.values())))
-        found.append(Found(unknown, unknown.start * float(np.exp(fit.logarithms[number])), half, own))
+        own = dict(zip(others, np.abs(shifts[number]).tolist(), strict=True))
+        value = unknown.start * float(np.exp(fit.logarithms[number]))
+        found.append(Found(unknown, value, float(sizes[number]), own))
     fitted = [fit.modelled(each, fit.logarithms) for each in fit.sets]
     curves = [curve(fit, each, model) for each, model in zip(fit.sets, fitted, strict=True)]
-    correlation = fit.correlation if fit.unknowns else np.zeros((0, 0))
-    # What others contribute moves several parameters at once.
-    together = correlation * np.outer(halves, halves) + sum(np.outer(shift, shift) for shift in shifts.values())
-    sizes = np.array([each.half for each in found])
     notes = [line for each, model in zip(fit.sets, fitted, strict=True) for line in remarks(fit, each, model)]
     notes += [
         f"{one.label} and {other.label} are known better together than alone (correlation {correlation[i, j]:+.3f})"
@@ -257,8 +263,9 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         if kept := sorted(model.parameters.keys() & names):
             text = f"keeps its own {', '.join(kept)}: it was not fitted to the data; identify it by a file of its own"
             notes.append(f"the model {model.name!r} of the relay's file {text}")
-    whole = together / np.outer(sizes, sizes)
-    return Identification(relay, path, found, missing, correlation, whole, fit.sets, fitted, curves, notes)
+    beside = moved @ root / sizes[:, None]
+    whole = np.block([[together / np.outer(sizes, sizes), beside], [beside.T, root @ root]])
+    return Identification(relay, path, found, missing, correlation, others, whole, fit.sets, fitted, curves, notes)
 
 
 def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
