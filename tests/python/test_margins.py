@@ -18,15 +18,15 @@ from relay_contact.many import side_by_side
 from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, judgement, qualify
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import Distribution
-from relay_contact.qualification.excitation import History, Random, Shock, Sine
+from relay_contact.qualification.excitation import STEP, History, Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.judgement import transient_level
 from relay_contact.qualification.page import inputs, warned, write
 from relay_contact.qualification.parts import CLOSED, CONTACT
 from relay_contact.qualification.relay import Model
-from relay_contact.qualification.response import respond
+from relay_contact.qualification.response import kept, respond, stays
 from relay_contact.qualification.results import Chance
-from relay_contact.qualification.trials import Specimen, pieces, steady
+from relay_contact.qualification.trials import Specimen, pieces, sine_least, steady
 from relay_contact.qualification.words import failures, passes_text, tighten
 from relay_contact.records import Record
 
@@ -118,6 +118,37 @@ def several(relay: Relay, test: Asked, count: int) -> None:
         # Counts that happen once in a thousand, with a share known to half a per cent.
         least, most = binom.ppf(5e-4, count, share - 0.005), binom.ppf(1 - 5e-4, count, share + 0.005)
         assert least <= failed <= most, (level, failed, share)
+
+
+def test_a_long_interruption_is_sought_where_the_open_contact_flies() -> None:
+    """Of 0.3 ms: linear theory expects it at the lowest frequency; brute force finds it near the resonance, 25 % lower.
+
+    Of 5 ms in noise above 200 Hz: none lasts so long by linear theory. How long others than the largest dips last is
+    not known, so that the interval begins where they open the contact, and nothing is said of a chance.
+    """
+    values: Values = {"effects.axialForce": "FromPreload", "tip.mass": 2.26e-5}
+    contacts, test = replace(CONTACTS, opening=3e-4), replace(SINE, double_amplitude=None)
+    specimen = Specimen(COMPONENT, values, contacts, respond(COMPONENT, values, contacts.threshold))
+    _, margin, _ = sine_least(specimen, test)
+    assert not fails(specimen, test, 0.985 * margin)
+    assert fails(specimen, test, 1.01 * margin)
+    noise = recorded(1)
+    found, opens = (
+        judgement.judged(replace(noise, contacts=replace(CONTACTS, opening=opening)), noise.tests[0], FEW)
+        for opening in (5e-3, 0.0)
+    )
+    assert found.margin.low < opens.margin.margin < found.margin.margin / 2
+    assert f"fail for an instant from {three(opens.margin.linear)} of the level on" in found.limits
+    assert found.margin.chance is None
+
+
+@pytest.mark.parametrize("opening", [1e-4, 3e-4, 1e-3])
+def test_a_sine_is_below_a_level_as_long_in_time_as_over_frequency(opening: float) -> None:
+    """Up to twice the level of a touch; to a step of time."""
+    time = np.arange(0.0, 0.02, STEP)
+    for frequency in (300.0, 900.0, 2500.0):
+        level = -stays(np.sin(2 * np.pi * frequency * time), opening).min()
+        assert level == pytest.approx(float(kept(frequency, opening)), abs=np.pi * frequency * STEP)
 
 
 def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:

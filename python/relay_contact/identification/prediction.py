@@ -14,7 +14,7 @@ from relay_contact.component import Array, Component, Contact, Values, half_sine
 from relay_contact.files import RelayContactError
 from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.qualification.level import threshold
-from relay_contact.qualification.response import EXACT, FREE, interrupting_force, respond
+from relay_contact.qualification.response import EXACT, FREE, interrupting_force, kept, respond
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import Specimen, vibrated
 
@@ -180,8 +180,7 @@ class Laboratory:
         gains, (preload, *law) = self.gains("contact.force", measurement.over, values)
         monitor = self.monitor(values)
         reserve = preload - interrupting_force(law, monitor.threshold)
-        longest = np.minimum(np.pi * measurement.over * monitor.opening, 1.5)
-        return max(reserve, 1e-9) / (gains * np.cos(longest))
+        return max(reserve, 1e-9) / (gains * kept(measurement.over, monitor.opening))
 
     def bounces(self, measurement: Measurement, values: Values) -> Array:
         """Return the lengths (s) of the first bounce after the fixed contact has met the spring at rest, at speeds."""

@@ -27,7 +27,7 @@ from relay_contact.qualification.level import MOST, RESOLUTION, Lengths
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP, pusher_of
 from relay_contact.qualification.position import WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
-from relay_contact.qualification.response import Response
+from relay_contact.qualification.response import FLIES, Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
 from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, sine_threshold, steady, sweep
 from relay_contact.records import ATTENUATED
@@ -81,6 +81,19 @@ class Level:
     linear: float
     weakest: str
     limits: str
+    sure: float = 1.0
+    """Part of the factor up to which nothing fails."""
+
+
+def sparing(level: Level, opens: float) -> Level:
+    """Return a level that the largest dips alone have told, and the one from which on they fail for an instant.
+
+    Far above that others last as long: a lower level may fail.
+    """
+    if level.factor * FLIES < opens:
+        return level
+    told = f"{level.limits}; by the largest dips alone, which fail for an instant from {three(opens)} of the level on"
+    return replace(level, limits=told, sure=opens / level.factor)
 
 
 @dataclass(frozen=True)
@@ -131,12 +144,11 @@ def vibration(position: Position, test: Sine, points: int) -> Found:
     levels = {}
     for name, (frequency, factor, decides) in weakest.items():
         response = parts[name].specimen.response
-        known, factors = response.sine(test, parts[name].specimen.lasting)
-        at = int(factors.argmin())
-        limits = bound(response, test, at, len(known), frequency)
+        _, factors = response.sine(test, parts[name].specimen.lasting)
+        limits = bound(response, test, frequency)
         if weakest[name] != expected[name]:
             limits = "fails at the level of the test where linear theory predicts no failure"
-        levels[name] = Level(factor, decides, float(factors[at]), f"{three(frequency)} Hz", limits)
+        levels[name] = Level(factor, decides, float(factors.min()), f"{three(frequency)} Hz", limits)
     seen = Seen(
         failed={name: max(each) for name, each in lengths.items() if any(each)},
         where={name: f"at {three(chosen[int(np.argmax(each))])} Hz" for name, each in lengths.items() if any(each)},
@@ -158,16 +170,17 @@ def beside(parts: dict[str, Position], test: Sine, weakest: dict[str, tuple[floa
             weakest[name] = frequency, *sine_threshold(specimen, test, frequency, factor, failing)
 
 
-def bound(response: Response, test: Sine, at: int, count: int, weakest: float) -> str:
+def bound(response: Response, test: Sine, weakest: float) -> str:
     """Return what limits the margin of a sine, in words."""
     width = response.bandwidth(weakest)
     if test.dwell:
         return f"resonance, {three(width)} Hz wide, at which it stays"
     if test.steps:
         return "the weakest of the frequencies"
-    if not 0 < at < count - 1:
+    if weakest in test.band:
         whole, below = "the whole force of inertia", "below the resonance"
-        return f"highest frequency of the range, {below}" if at else f"lowest frequency of the range, {whole}"
+        lowest = weakest == test.band[0]
+        return f"lowest frequency of the range, {whole}" if lowest else f"highest frequency of the range, {below}"
     # Time at each octave, and that which a vibration of this width takes to decay by a factor e.
     octaves = np.log2(1 + width / weakest)
     decays = octaves / test.rate * 60 * np.pi * width
@@ -218,7 +231,8 @@ def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Arra
     limits = f"half of the variance of the {moving} lies at {weakest}; its rms is {part_of_rest} of the {rest}"
     if eased > 1:
         limits += f"; clipping raises the level by {three(100 * (eased - 1))} %"
-    return Level(linear * part * eased, decides, linear * eased, weakest, limits), lengths, rows
+    found = Level(linear * part * eased, decides, linear * eased, weakest, limits)
+    return sparing(found, response.random(test, 0.0) * eased), lengths, rows
 
 
 def merged(position: Position, runs: list[tuple[Lengths, Array]]) -> tuple[Lengths, dict[str, float]]:
@@ -278,7 +292,10 @@ def transient_level(position: Position, test: Transient) -> tuple[Level, list[Ru
                 way, piece, factor, decides = other, each, lower, failed
     start = test.record.time[0] if isinstance(test, History) else 0.0
     where, limits, weakest = words(position, test, way, piece, start)
-    return Level(factor, decides, own[0][1].guess, weakest, limits), runs, piece, where, ways[way] * factor
+    found = Level(factor, decides, own[0][1].guess, weakest, limits)
+    if len(own) > len(ways):
+        found = sparing(found, min(specimen.response.course(each.course, ways[other], 0.0) for other, each in own))
+    return found, runs, piece, where, ways[way] * factor
 
 
 def failing_run(specimen: Specimen, piece: Piece, level: float, start: float) -> tuple[Lengths, Array]:
@@ -385,7 +402,7 @@ def judged(position: Position, test: Test, points: int) -> Finding:
             levels, seen = transient(position, test)
         case _:
             raise TypeError(test)
-    levels = {name: ENDLESS if each.factor >= MOST else each for name, each in levels.items()}
+    levels = {name: replace(ENDLESS, sure=each.sure) if each.factor >= MOST else each for name, each in levels.items()}
     own = whole(position, test, levels, seen)
     return finding(verdict(own.low, own.high), levels[first_of(levels)].limits, own)
 
@@ -434,27 +451,28 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
     least = Drawn.least(list(drawn.values()))
     natural = position.specimen.response.natural
     kept = test.record.kept(natural) if isinstance(test, History) else 1.0
-    low, high = ends(least, level.factor, kept)
+    known = kept * min(each.sure for each in levels.values())
+    low, high = ends(least, level.factor, known)
     wears = [each.wear(test, levels[each.part].factor) for each in position.parts]
     wear = {"overtravel": wears[0]["overtravel"], "margin": np.min([each["margin"] for each in wears], axis=0).tolist()}
     own = {
-        name: PartMargin(each.factor, *ends(drawn[name], each.factor, kept), each.weakest, each.limits)
+        name: PartMargin(each.factor, *ends(drawn[name], each.factor, kept * each.sure), each.weakest, each.limits)
         for name, each in levels.items()
     }  # fmt: skip
     return Margin(
         margin=level.factor, linear=level.linear, decides=level.decides, weakest=level.weakest, failed=seen.failed,
         where=seen.where, least=seen.least, rest=rested(position), natural=natural,
         curves=seen.curves, overtravel=abs(position.overtravel), wear=wear, passes=passes(wear, low / level.factor),
-        low=low, high=high, chance=position.chance(test, least, level.factor) if kept >= 1 - ATTENUATED else None,
+        low=low, high=high, chance=position.chance(test, least, level.factor) if known >= 1 - ATTENUATED else None,
         parts=own if len(own) > 1 else {}, tolerance=tolerated(parts[first], test),
     )  # fmt: skip
 
 
-def ends(drawn: Drawn, factor: float, kept: float) -> tuple[float, float]:
+def ends(drawn: Drawn, factor: float, known: float) -> tuple[float, float]:
     """Return the ends of the interval of a margin, as far out as its draws may be wrong.
 
-    What the component found is within. `kept` is the part of a vibration that a record has at least: with all of it
-    less of its level may fail.
+    What the component found is within. `known` is the part of the margin up to which surely nothing fails: a record may
+    lack some of a vibration, and with all of it less of its level may fail.
     """
     low, high = np.quantile(drawn.margins, LIMITS, method="hazen").tolist()
-    return kept * min(low * (1 - drawn.error), factor), max(high * (1 + drawn.error), factor)
+    return known * min(low * (1 - drawn.error), factor), max(high * (1 + drawn.error), factor)

@@ -41,6 +41,9 @@ ROUNDED = 1e-3
 """Least share of the force of a stop that a contact's is taken to be, for the tolerance."""
 STILL = 1e-9
 """Part of a force, or gap, below which its change is calm: a balanced armature does not feel the pulse at all."""
+FLIES = 0.5
+"""Part of a vibration that a failure takes at least: beyond twice the level of a touch the contact, which then is open
+for long and flies by itself, is not that of linear theory."""
 EXACT = 1e-11
 """solver.tolerance of motions that are so small a part of the preload."""
 FREE: Values = {
@@ -86,10 +89,8 @@ class Response:
     def sine(self, test: Sine, opening: float) -> tuple[Array, Array]:
         """Return the factors of the level that fail for a time (s), at the frequencies (Hz) of a test."""
         frequency = test.tried(self.frequency, self.gain)
-        # Force or gap is below zero for the time where its amplitude is the reserve over this cosine.
-        needed = self.reserve / np.cos(np.minimum(np.pi * frequency * opening, 1.5))
         gain = np.interp(frequency, self.frequency, self.gain)
-        return frequency, needed / np.maximum(test.amplitude(frequency) * gain, 1e-300)
+        return frequency, self.reserve / kept(frequency, opening) / np.maximum(test.amplitude(frequency) * gain, 1e-300)
 
     def weakest(self, test: Sine, opening: float) -> float:
         """Return the frequency (Hz) of a test at which the least factor of the level fails for a time (s)."""
@@ -110,7 +111,7 @@ class Response:
         if not self.gain.any():
             return np.inf
         rms, mean = moments or self.moments(test)
-        needed = self.reserve * (1 + (np.pi * mean * opening) ** 2 / 2)
+        needed = self.reserve / kept(mean, opening)
         crossings = -np.log1p(-chance) / test.duration
         largest = rms * np.sqrt(2 * np.log(mean / crossings))
         if test.sines:
@@ -149,14 +150,20 @@ class Response:
         return self.reserve / max(float(-stays(sign * change, opening).min()), 1e-12)
 
 
+def kept(frequency: Array | float, opening: float) -> Array:
+    """Return the part of a sine (Hz) that it exceeds for a time (s), or the part that is linear."""
+    return np.asarray(np.maximum(np.cos(np.minimum(np.pi * frequency * opening, np.pi)), FLIES))
+
+
 def stays(change: Array, opening: float) -> Array:
-    """Return the level below which a change stays for a time (s) from each step on."""
+    """Return the level below which a change stays for a time (s) from each step on, or the part that is linear."""
     dwell = max(1, round(opening / STEP))
     most, window = change, 1
     while 2 * window <= dwell + 1:
         most, window = np.maximum(most[:-window], most[window:]), 2 * window
     rest = dwell + 1 - window
-    return np.maximum(most[: len(most) - rest], most[rest:])
+    most = np.maximum(most[: len(most) - rest], most[rest:])
+    return np.minimum(most, FLIES * change[: len(most)])
 
 
 @cache

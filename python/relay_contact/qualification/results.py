@@ -89,7 +89,7 @@ class Margin:
     low: float = 0.0
     high: float = 0.0
     chance: Chance | None = None
-    """None of a record whose steps are too coarse for it."""
+    """None of a record that leaves too much open for it."""
     parts: dict[str, PartMargin] = field(default_factory=dict)
     """The margins of each part, of a relay that has others than its contacts; the least is that of the relay."""
     tolerance: tuple[float, float] | None = None
@@ -97,7 +97,7 @@ class Margin:
 
     @property
     def stated(self) -> bool:
-        """Whether something makes an interval: an uncertain parameter, an allowance, a noise or a coarse record."""
+        """Whether something makes an interval: an uncertain parameter, an allowance, a noise or a record."""
         return self.chance is None or len(self.chance.effects) > 0
 
 

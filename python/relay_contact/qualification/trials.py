@@ -232,15 +232,32 @@ def sine_threshold(
 def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
     """Return the frequency (Hz) of a sweep that fails at the least level, its factor of the level, and which contacts.
 
-    That of linear theory, if the component fails there as expected, or the test has no other. Else steps from there to
-    lower levels, then the vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is
-    elsewhere. What the test hardly shakes does not fail.
+    That of linear theory, unless another fails at a lower level in the component, of those at which the contact opens
+    there: an open contact is not linear. What the test hardly shakes does not fail.
     """
     known, factors = specimen.response.sine(test, specimen.lasting)
     at = int(factors.argmin())
-    first, guess = float(known[at]), float(factors[at])
-    if guess >= MOST:
-        return first, MOST, []
+    if factors[at] >= MOST:
+        return float(known[at]), MOST, []
+    least = sine_near(specimen, test, float(known[at]), float(factors[at]))
+    _, touches = specimen.response.sine(test, 0.0)
+    order = touches.argsort()
+    parts = known if test.steps else np.floor(np.log(known) / BESIDE)
+    _, first = np.unique(parts[order], return_index=True)
+    # Of all that are so near that one tells of the others, the first to open.
+    for each in order[np.sort(first)]:
+        frequency, level = float(known[each]), least[1] * (1 - APART)
+        if touches[each] < level and sine_tried(specimen, test, frequency)(level)[0]:
+            least = sine_near(specimen, test, frequency, level)
+    return least
+
+
+def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tuple[float, float, list[str]]:
+    """Return what `sine_least` does, near a frequency (Hz) and a level that are expected.
+
+    There, if the component fails as expected, or the test has no other frequency. Else steps from there to lower
+    levels, then the vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is elsewhere.
+    """
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
     low, high = test.band
 
@@ -254,7 +271,7 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
         return threshold(tried, guess, roughly=True)[0] if low <= frequency <= high else np.inf
 
     exact = [exactly(0.0, guess)]
-    if len(known) > 1 and not test.steps and abs(exact[0][1] / guess - 1) > APART:
+    if not (test.steps or test.dwell) and abs(exact[0][1] / guess - 1) > APART:
         found, best = {0.0: exact[0][1]}, 0.0
         while beside := {best - 1, best + 1} - found.keys():
             found |= {place: roughly(place, found[best]) for place in beside}

@@ -23,7 +23,7 @@ UNREAD = "† Read in a quotation of the standard. * From memory: not, or not al
 TOLD = {MODEL: "allowance for the model", CHANCE: CHANCE}
 UNSTATED = "none stated"
 """In place of an interval and a chance, where the relay's file has nothing that they could come from."""
-COARSE = "the coarse steps of the record, besides the uncertainties"
+COARSE = "what the record leaves open, besides the uncertainties"
 LEAST_SHARE = 0.1  # of the variance, below which knowing a parameter narrows the interval by less than 5 %
 
 
