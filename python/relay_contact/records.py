@@ -7,7 +7,7 @@ included: nothing is resampled.
 
 import importlib
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,6 +26,7 @@ COARSE = 4
 fifths of its rate, and the resonance has a width. Straight lines leave 81 % there."""
 ATTENUATED = 0.01  # part of a vibration, from which on it is told that straight lines take it off
 FEWEST = 9  # values: two periods of what is sampled four times in each
+NAMED = 5  # channels that are named, of those that are not tested
 LOOKED = 200  # lines of a text in which the names of its columns are sought
 TIME = ("time", "t")
 """Names of the column, or of the variable, of time."""
@@ -43,10 +44,12 @@ class Record:
     acceleration: Array
     clock: str = "s"
     """Unit of time in the file, empty if it has none."""
+    others: tuple[str, ...] = ()
+    """Channels that are not tested, as they have another unit or none."""
 
     @property
     def notes(self) -> list[str]:
-        """Return what has to be said of its time."""
+        """Return what has to be said of its time, and of what is beside it in the file."""
         steps = np.diff(self.time)
         usual = float(np.median(steps))
         told = [] if self.clock else ["time without a unit, taken as s"]
@@ -59,6 +62,9 @@ class Record:
             )
         if self.acceleration[0]:
             told.append(f"before the record the acceleration is its first value, {three(self.acceleration[0])} m/s²")
+        if self.others:
+            more = f" and {len(self.others) - NAMED} more" * (len(self.others) > NAMED)
+            told.append(f"channels not tested, as not in g or m/s²: {', '.join(self.others[:NAMED])}{more}")
         return told
 
     @property
@@ -105,11 +111,13 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         raise RelayContactError(f"{path}: no such file; it has to be a record of acceleration")
     found = []
     names = []
+    others = []
     for each in READERS.get(path.suffix.lower(), text)(path):
         name, own = each.name, each.unit
         names.append(name)
         known = spelled(own) or spelled(unit)
         if channel.lower() != name.lower() if channel else known not in ACCELERATIONS:
+            others += [] if channel else [f"{name} ({own or 'no unit'})"]
             continue
         if known not in ACCELERATIONS:
             text_ = f"unit {own or 'none'}: not allowed, allowed is {', '.join(ACCELERATIONS)}"
@@ -120,7 +128,7 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         if channel:
             raise RelayContactError(f"{path}: no channel {channel}; {there}{nearest(channel, names)}")
         raise RelayContactError(f"{path}: no channel with an acceleration in g or m/s2; {there}; a unit may be given")
-    return found
+    return [replace(each, others=tuple(others)) for each in found]
 
 
 def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> Record:

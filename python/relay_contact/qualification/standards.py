@@ -69,7 +69,7 @@ class Recorded(Table):
             excitation.History(
                 f"{name}, {each.channel}" if len(found) > 1 else name, self.clause or f"{path.name}, {each.channel}",
                 self.evidence, axis=self.axis, record=each, both=self.reversed,
-                digest=digest(each.time.tobytes() + each.acceleration.tobytes() + each.clock.encode()),
+                digest=digest(each.time.tobytes() + each.acceleration.tobytes() + repr(each.notes).encode()),
             )
             for each in found
         ]  # fmt: skip
