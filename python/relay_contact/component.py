@@ -244,6 +244,15 @@ class Component:
         """Return the number of a parameter among these, else its start value; an entry of a spring file is a factor."""
         return float(values.get(name, 1.0 if is_entry(name) else self.start(name)))
 
+    def choice(self, values: Values, name: str) -> str:
+        """Return the choice of a parameter among these, else its start value."""
+        value = values.get(name, self.start(name))
+        return (
+            value
+            if isinstance(value, str)
+            else {number: each for each, number in self.choices(name).items()}[int(value)]
+        )
+
     def started(self, values: Values | None = None) -> "Contact":
         """Give an instance that is initialised with these parameters and inputs, at time 0.
 

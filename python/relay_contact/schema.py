@@ -158,6 +158,9 @@ def variables(
             if contact:
                 with at(path, *place, *keys), contact.explained():
                     contact.set(exact(contact.component, name, "" if name in inputs else kind), value)
+                if contact.component.variables[name].type == "Enumeration":
+                    # By its name, whichever way it is given.
+                    value = contact.component.choice({name: value}, name)
             values[name] = value
     return values
 

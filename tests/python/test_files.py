@@ -424,6 +424,13 @@ def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str
         run("paper-1khz", component=COMPONENT, **given)
 
 
+def test_a_choice_in_a_file_has_its_name_if_it_is_given_by_its_number(tmp_path: Path) -> None:
+    path = tmp_path / "relay.toml"
+    number = COMPONENT.choices("effects.contactLaw")["Rough"]
+    path.write_text(f"parameters.effects.contactLaw = {number}\n")
+    assert Relay.read(path, COMPONENT).positions == {"position 1": {"effects.contactLaw": "Rough"}}
+
+
 def test_a_scene_made_in_python_is_changed_in_either_spelling() -> None:
     table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
     values: dict[str, Any] = {"contact_overtravel": 1e-4, "base_acceleration": 9.0}

@@ -24,7 +24,7 @@ from relay_contact.qualification import FEW, Relay, Standard, assessment, judgem
 from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.page import write
-from relay_contact.qualification.response import respond
+from relay_contact.qualification.response import interrupting_force, respond
 from relay_contact.qualification.results import Assessment, Finding, Tested
 from relay_contact.qualification.trials import Specimen, steady
 
@@ -516,6 +516,36 @@ def test_a_relay_without_uncertainties_has_no_interval(tmp_path: Path, capsys: p
     (_, noise), (_, shock), *_ = pd.read_csv(tmp_path / "qualification.csv").iterrows()
     assert shock[["low", "high", "chance", "chance low", "chance high"]].isna().all()
     assert noise["low"] < noise["margin"] < noise["high"]
+
+
+@pytest.mark.parametrize("resistance", ["PowerLaw", "Holm", "Barber"])
+@pytest.mark.parametrize("law", ["Hertz", "Rough"])
+def test_the_force_of_an_interruption_is_that_of_any_law_of_the_resistance(law: str, resistance: str) -> None:
+    """At the resistance that the component has at another preload, with a film and beside the open resistance."""
+    values: dict[str, Any] = {
+        "effects.contactLaw": law, "effects.resistance": resistance, "resistance.film": 2e-3, "resistance.open": 100.0,
+    }  # fmt: skip
+    force, threshold = resting({**values, "contact.overtravel": 3e-5}, "contact.force", "contact.resistance")
+    with COMPONENT.started(values) as contact:
+        assert interrupting_force(contact, values, threshold) == pytest.approx(force, rel=1e-6)
+        # More than the film alone no force makes it less.
+        assert interrupting_force(contact, values, 1.9e-3) == np.inf
+
+
+def test_a_contact_is_interrupted_by_its_own_law_of_the_resistance(tmp_path: Path) -> None:
+    """By Holm it has 1.4 mOhm at rest, 30 times less than by the power law, and is not interrupted at rest.
+
+    Of a film of 50 mOhm linear theory says of a monitor that sees 120 mOhm what the component finds.
+    """
+    holm = described({"effects.resistance": "Holm"})
+    film = described({"resistance.film": 0.05}, {"resistance.film": Distribution(part=0.2)})
+    for relay, threshold in ((holm, 0.04), (film, 0.12)):
+        contacts = replace(MILITARY.contacts, voltage=threshold, current=1.0)
+        (tested,) = judged(relay, tmp_path, Shock("a", "", "measured", 30.0, 11e-3), contacts=contacts)
+        assert tested.margin.linear == pytest.approx(tested.margin.margin, rel=1e-3)
+    # A fifth of it is a fifth of what the force may lose.
+    assert tested.margin.low < 0.8 * tested.margin.margin
+    assert tested.margin.high > 1.1 * tested.margin.margin
 
 
 def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

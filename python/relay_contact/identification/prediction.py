@@ -142,19 +142,15 @@ class Laboratory:
         self.contact.begin_anew(values)
         return self.contact.real(name)[0]
 
-    def gains(self, name: str, frequencies: Array, values: Values) -> tuple[Array, list[float]]:
-        """Return the amplitudes of an output per base acceleration, and force (N) and power law of the resistance."""
+    def gains(self, name: str, frequencies: Array, values: Values) -> Array:
+        """Return the amplitudes of an output per base acceleration."""
         values = {**values, "solver.tolerance": EXACT}
-        self.contact.begin_anew(values)
-        natural, *rest = self.contact.real(
-            "preload.frequency", "preload.force", "resistance.coefficient", "resistance.exponent"
-        )
-        amplitude = WEAK * abs(self.overtravel(values)) * (2 * np.pi * natural) ** 2
+        amplitude = WEAK * abs(self.overtravel(values)) * (2 * np.pi * self.rest("preload.frequency", values)) ** 2
         found = []
         for frequency in map(float, frequencies):
             self.contact.begin_anew({**values, **sine(frequency, amplitude)})
             found.append(self.steady(name, frequency) / amplitude)
-        return np.array(found), rest
+        return np.array(found)
 
     def steady(self, name: str, frequency: float) -> float:
         """Return the amplitude of an output once the start is forgotten."""
@@ -172,14 +168,13 @@ class Laboratory:
 
     def amplitude(self, measurement: Measurement, values: Values) -> Array:
         """Return the amplitudes of a frequency response."""
-        gains, _ = self.gains(OUTPUTS[measurement.quantity], measurement.over, values)
-        return gains * measurement.acceleration
+        return self.gains(OUTPUTS[measurement.quantity], measurement.over, values) * measurement.acceleration
 
     def level(self, measurement: Measurement, values: Values) -> Array:
         """Return the accelerations (m/s2) from which on the contact is interrupted, as far as it is linear."""
-        gains, (preload, *law) = self.gains("contact.force", measurement.over, values)
+        gains = self.gains("contact.force", measurement.over, values)
         monitor = self.monitor(values)
-        reserve = preload - interrupting_force(law, monitor.threshold)
+        reserve = self.rest("preload.force", values) - interrupting_force(self.contact, values, monitor.threshold)
         return max(reserve, 1e-9) / (gains * kept(measurement.over, monitor.opening))
 
     def bounces(self, measurement: Measurement, values: Values) -> Array:

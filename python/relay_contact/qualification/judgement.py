@@ -24,7 +24,7 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     straight,
 )
 from relay_contact.qualification.level import MOST, RESOLUTION, Lengths
-from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP, pusher_of
+from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP
 from relay_contact.qualification.position import WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import FLIES, Response
@@ -409,7 +409,7 @@ def judged(position: Position, test: Test, points: int) -> Finding:
 
 def decided_at_rest(position: Position) -> tuple[Verdict, str] | None:
     """Return the verdict of a position that its state at rest decides, and why."""
-    pusher = pusher_of(position.component, position.values)
+    pusher = position.component.choice(position.values, "effects.pusher")
     if pusher == MOVED and not {CORE, STOP} & {*position.rest.held}:
         return "FAIL", "the armature rests at neither of its stops"
     if position.axis not in (NORMAL, *position.relay.axes):

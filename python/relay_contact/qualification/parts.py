@@ -55,17 +55,12 @@ class Part:
         return self.offset + sum(factor * contact.get(name) for name, factor in self.terms)
 
 
-def pusher_of(component: Component, values: Values) -> str:
-    """Return the choice of effects.pusher."""
-    return str(values.get("effects.pusher", component.start("effects.pusher")))
-
-
 def at_rest(component: Component, values: Values) -> Rest:
     """Return what is judged with these parameters.
 
     Without a pusher the sign of the overtravel says whether the contact is open, else the component does.
     """
-    if pusher_of(component, values) == NONE:
+    if component.choice(values, "effects.pusher") == NONE:
         return Rest(component.value(values, "contact.overtravel") < 0)
     known = all_parts(component, values)
     with component.started(values) as contact, contact.explained():
@@ -81,7 +76,7 @@ def parts(component: Component, values: Values, rest: Rest) -> tuple[Part, ...]:
 def all_parts(component: Component, values: Values) -> dict[str, Part]:
     """Return all parts beside the contacts that a relay with these parameters has, by name."""
     found = [Part(PUSHER, (("pusher.force", 1.0),), least="step.minimumPusherForce")]
-    if pusher_of(component, values) == MOVED:
+    if component.choice(values, "effects.pusher") == MOVED:
         names = ("stopStiffness", "stopRestitution", "mass", "restPosition")
         stiffness, restitution, mass, place = (component.value(values, f"armature.{name}") for name in names)
         damper = 2 * damping_ratio(restitution) * sqrt(stiffness * mass)
@@ -118,7 +113,11 @@ def damping_ratio(restitution: float) -> float:
 def check_held(component: Component, values: Values) -> None:
     """Refuse a position in which the nominal current or more does not hold the armature at its core."""
     current = component.value(values, "coil.relativeCurrent")
-    if pusher_of(component, values) == MOVED and abs(current) >= 1 and CORE not in at_rest(component, values).held:
+    if (
+        component.choice(values, "effects.pusher") == MOVED
+        and abs(current) >= 1
+        and CORE not in at_rest(component, values).held
+    ):
         with component.started(values) as contact:
             gap = contact.get("armature.gap")
         text = f"not allowed, the magnet does not hold the armature, which rests {1e3 * gap:.3g} mm from its core"

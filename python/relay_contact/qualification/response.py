@@ -230,7 +230,7 @@ def reserved(
         # A velocity (m/s) that moves a contact of more than 10 Hz by less than a third of its gap.
         size = 10 * reserve
     else:
-        lost = interrupting_force(contact.real("resistance.coefficient", "resistance.exponent"), threshold)
+        lost = interrupting_force(contact, values, threshold)
         overtravel = contact.component.value(values, "contact.overtravel")
         overtravel = max(abs(overtravel), SHALLOW) if held else overtravel
         (force,) = contact.real("contact.force")
@@ -302,7 +302,34 @@ def spread(count: int, columns: int) -> Array:
     return np.asarray((order + 0.5) / count)
 
 
-def interrupting_force(law: list[float], threshold: float) -> float:
-    """Return the contact force (N) at which the resistance is the threshold, by the power law."""
-    coefficient, exponent = law
-    return float((coefficient / threshold) ** (1 / exponent))
+def interrupting_force(contact: Contact, values: Values, threshold: float) -> float:
+    """Return the contact force (N) at which the resistance is the threshold (Ohm): src/electrical.rs has the laws."""
+    component = contact.component
+    names = ("coefficient", "exponent", "film", "open", "resistivity", "hardness")
+    coefficient, exponent, film, apart, resistivity, hardness = (
+        component.value(values, f"resistance.{name}") for name in names
+    )
+    constriction = 1 / max(1 / threshold - 1 / apart, 1e-300) - film
+    match component.choice(values, "effects.resistance"):
+        case "Holm":
+            coefficient, exponent = resistivity / 2 * np.sqrt(np.pi * hardness), 0.5
+        case "Barber":
+            law, rough = (
+                component.choice(values, "effects.contactLaw"),
+                component.value(values, "contact.stiffnessExponent"),
+            )
+            exponent = {"Hertz": 1 / 3, "Rough": rough}.get(law, 0.0)
+            force, stiffness = contact.real("preload.force", "preload.contactStiffness")
+            coefficient = resistivity / compliance(component, values) / stiffness * force**exponent
+    if constriction <= 0 or not exponent:
+        return 0.0 if coefficient <= constriction else np.inf
+    return float((coefficient / constriction) ** (1 / exponent))
+
+
+def compliance(component: Component, values: Values) -> float:
+    """Return that of both contacts as elastic half-spaces, 1/Pa."""
+    return sum(
+        (1 - component.value(values, f"contact.{side}.poissonRatio") ** 2)
+        / component.value(values, f"contact.{side}.youngsModulus")
+        for side in ("moving", "fixed")
+    )

@@ -6,6 +6,7 @@ curvature over the square of the radius of Hertz's circle, which is the roughnes
 
 from relay_contact.component import Component
 from relay_contact.qualification.relay import Relay
+from relay_contact.qualification.response import compliance
 
 SMOOTH = 0.05
 """The number below which Hertz's law is wrong by 7 % at most, 1."""
@@ -21,14 +22,9 @@ def told(component: Component, relay: Relay) -> list[str]:
         if force <= 0:
             lines.append(f"{name}: open at rest")
             continue
-        compliance = sum(
-            (1 - component.value(values, f"contact.{side}.poissonRatio") ** 2)
-            / component.value(values, f"contact.{side}.youngsModulus")
-            for side in ("moving", "fixed")
-        )
         curvature = component.value(values, "contact.curvatureRadius")
         # The circle in which smooth spheres touch.
-        radius = (0.75 * force * curvature * compliance) ** (1 / 3)
+        radius = (0.75 * force * curvature * compliance(component, values)) ** (1 / 3)
         indentation = radius**2 / curvature
         lines.append(
             f"{name}: {100 * force:.3g} cN; a smooth contact touches in a circle of radius "
