@@ -552,6 +552,8 @@ def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.C
     wanted = ["--test", "204", "--test", "none", "--out", str(tmp_path)]
     assert main(["qualify", "paper", "--standard", "MIL-STD-202", *wanted]) == 1
     assert "none: no test named so; there are 201A, 204 A" in capsys.readouterr().err
+    with pytest.raises(RelayContactError, match=r"^none: no test named so"):
+        qualify("paper", "MIL-STD-202", tests="none", out=tmp_path, component=COMPONENT)
     assert main(["qualify", "paper", "--history", "record.csv", "--test", "204"]) == 1
     assert "tests 204: not allowed without a standard" in capsys.readouterr().err
 

@@ -108,11 +108,10 @@ def unknowns(
     tables = read_toml(path).get("position", [{}])
     used = [name for name in relay.positions if any(each.position == name for each in measurements)]
     found = []
-    for name in names:
-        if not name.startswith(PREFIX):
-            name = component.settable(name)
-            if component.variables[name].type != "Real":
-                raise RelayContactError(f"{name}: not a real parameter, which cannot be identified")
+    # Each once, in whichever spelling.
+    for name in dict.fromkeys(name if name.startswith(PREFIX) else component.settable(name) for name in names):
+        if not name.startswith(PREFIX) and component.variables[name].type != "Real":
+            raise RelayContactError(f"{name}: not a real parameter, which cannot be identified")
         own = {place for place, table in zip(relay.positions, tables, strict=True) if has(table, name)}
         shared = [place for place in used if place not in own]
         groups = ([tuple(shared)] if shared else []) + [(place,) for place in used if place in own]

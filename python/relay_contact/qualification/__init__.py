@@ -22,7 +22,7 @@ def qualify(
     standard: str | Path | None = None,
     *,
     out: str | Path,
-    tests: list[str] | None = None,
+    tests: str | list[str] | None = None,
     history: list[str | Path] | None = None,
     unit: str = "",
     rate: float | None = None,
@@ -36,16 +36,18 @@ def qualify(
 ) -> Assessment:
     """Test a relay as a standard asks, each by its name or its file; write page and tables; return the results.
 
-    `tests` are parts of the names of those wanted, without it all. `history` are files of measured accelerations, each
-    of whose channels is a further test (without a standard the only ones, with the limits of MIL-PRF-28776); `unit` and
-    `rate` (samples a second) are those of files that do not tell. What an interrupted assessment has finished is not
-    run again. `quick` vibrates at fewer frequencies; margins are the same. Tests run side by side on all cores,
-    or by so many threads as `workers` says. `cluster` is the address of a Dask cluster whose workers have this package.
-    `date` stands on the page, without which its bytes are the same for each run; `pdf` writes it as PDF, too.
+    `tests` is a part of the names of those wanted, or several such parts; without it all. `history` are files of
+    measured accelerations, each of whose channels is a further test (without a standard the only ones, with the limits
+    of MIL-PRF-28776); `unit` and `rate` (samples a second) are those of files that do not tell. What an interrupted
+    assessment has finished is not run again. `quick` vibrates at fewer frequencies; margins are the same. Tests run
+    side by side on all cores, or by so many threads as `workers` says. `cluster` is the address of a Dask cluster whose
+    workers have this package. `date` stands on the page, without which its bytes are the same for each run; `pdf`
+    writes it as PDF, too.
     """
     # Workers and lists of relays import this package, too, and draw nothing.
     from relay_contact.qualification.page import write
 
+    tests = [tests] if isinstance(tests, str) else tests
     if tests and not standard:
         raise RelayContactError(f"tests {', '.join(tests)}: not allowed without a standard, whose tests they are")
     component, out = component or Component(), Path(out)
