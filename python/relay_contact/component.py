@@ -395,13 +395,16 @@ class Contact:
         Return what is watched after each step. A time given twice is a jump; the first is that already reached. A call
         from Python takes longer than a step: here the component steps by itself, and Python is free for something else.
         """
-        times = np.ascontiguousarray(time, dtype=np.float64)
+        # Differences of times would be taken as numbers of their unit.
+        times = np.ascontiguousarray(np.asarray(time).astype(np.float64, casting="same_kind", copy=False))
         if times.ndim != 1:
             raise RelayContactError(f"time of {times.ndim} dimensions: not allowed, allowed is one")
         given = np.zeros((len(times), len(courses)))
         for column, course in enumerate(courses.values()):
             given[:, column] = course
         inputs, outputs = (np.array(self.references(*names), dtype=np.uint32) for names in (courses, watched))
+        if len(set(inputs)) < len(inputs):
+            raise RelayContactError(f"{', '.join(courses)}: not allowed, allowed is each input once")
         rows = np.zeros((max(0, len(times) - 1), len(watched)))
         try:
             # A new object, with types of its own, as other threads have theirs.

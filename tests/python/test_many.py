@@ -216,6 +216,10 @@ def test_instances_serve_one_run_after_another() -> None:
             contact.real("contact.farce")
         with pytest.raises(RelayContactError, match="time of 2 dimensions: not allowed"):
             contact.drive([[0.0, 1e-5]], {})
+        with pytest.raises(TypeError, match="Cannot cast array data"):
+            contact.drive(np.array([0, 10_000], dtype="timedelta64[ns]"), {})
+        with pytest.raises(RelayContactError, match="allowed is each input once"):
+            contact.drive([0.0, 1e-5], {"base_acceleration": [0.0, 0.0], "base.acceleration": [0.0, 50.0]})
     with pytest.raises(AttributeError):
         contact.get("contact.force")
 
