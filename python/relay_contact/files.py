@@ -5,6 +5,7 @@ import os
 import re
 import tomllib
 from pathlib import Path
+from threading import get_ident
 from typing import Any
 
 HERE = Path(__file__).resolve().parent
@@ -65,6 +66,13 @@ def named(kind: str, name: str | Path, known: dict[str, Path]) -> Path:
 def digest(data: bytes) -> str:
     """Return the hash by which contents are known: the first 16 digits of SHA-256."""
     return hashlib.sha256(data).hexdigest()[:16]
+
+
+def write_at_once(path: Path, text: str) -> None:
+    """Write a file that is there as a whole or not at all, as others may look for it or write it now."""
+    part = path.with_name(f"{path.name}.{os.getpid()}.{get_ident()}.part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(path)
 
 
 def shown(value: object) -> str:

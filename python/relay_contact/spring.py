@@ -10,12 +10,11 @@ stiffness of the whole, clamp included, whether the spring is a uniform section,
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from threading import get_ident
 from typing import Any
 
 import tomlkit
 
-from relay_contact.files import RelayContactError, digest, read_toml
+from relay_contact.files import RelayContactError, digest, read_toml, write_at_once
 
 PREFIX, FIXED = "spring.", "fixed.spring."
 OF_FILES = {"beam.file": PREFIX, "fixed.file": FIXED}
@@ -122,9 +121,6 @@ def applied(values: Mapping[str, Any], start: float, folder: Path) -> dict[str, 
             text = text_of(file, mine, modulus if shared else None, prefix)
             path = folder / f"spring-{digest(text.encode())}.toml"
             if not path.exists():
-                # At once, as another thread may look for it now.
-                part = path.with_suffix(f".{get_ident()}")
-                part.write_text(text, encoding="utf-8")
-                part.replace(path)
+                write_at_once(path, text)
             own[parameter] = str(path)
     return own

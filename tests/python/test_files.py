@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from pathlib import Path
+from threading import Barrier
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,9 @@ import tomli_w
 from matplotlib.figure import Figure
 
 from component import COMPONENT, ROOT
-from relay_contact import RelayContactError, Scene, plot, run, scenes
+from relay_contact import RelayContactError, Scene, plot, run, scenes, side_by_side
 from relay_contact.command import main
-from relay_contact.files import read_toml
+from relay_contact.files import read_toml, write_at_once
 from relay_contact.qualification import Relay, Standard, qualify, relays, standards
 from relay_contact.qualification import relay as relay_files
 from relay_contact.qualification.excitation import BAND, NARROWEST, overall
@@ -422,6 +423,20 @@ def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path
 def test_arguments_of_a_run_that_do_not_fit_are_refused(given: Any, message: str) -> None:  # noqa: ANN401
     with pytest.raises(RelayContactError, match=message):
         run("paper-1khz", component=COMPONENT, **given)
+
+
+def test_threads_write_one_file_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As two assessments in one folder do."""
+    write, both = Path.write_text, Barrier(2, timeout=10)
+
+    def together(path: Path, text: str, encoding: str) -> int:
+        count = write(path, text, encoding)
+        both.wait()
+        return count
+
+    monkeypatch.setattr(Path, "write_text", together)
+    side_by_side(lambda _: write_at_once(tmp_path / "finding.json", "found"), range(2), 2)
+    assert [each.read_text() for each in tmp_path.iterdir()] == ["found"]
 
 
 def test_a_choice_in_a_file_has_its_name_if_it_is_given_by_its_number(tmp_path: Path) -> None:

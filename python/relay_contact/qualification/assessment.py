@@ -6,7 +6,6 @@ continues, with the same bytes.
 
 import hashlib
 import json
-import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +15,7 @@ from threading import Lock
 from threadpoolctl import threadpool_limits
 
 from relay_contact.component import Component, Values
-from relay_contact.files import HERE, RelayContactError
+from relay_contact.files import HERE, RelayContactError, write_at_once
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import Test
 from relay_contact.qualification.judgement import tested, together
@@ -119,9 +118,7 @@ def assess(
             tell(label)
 
     def keep(path: Path, text: str) -> None:
-        part = path.with_name(f"{path.name}.{os.getpid()}.part")
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
+        write_at_once(path, text)
         told("")
 
     if cluster:
