@@ -21,6 +21,7 @@ from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import STEP, History, Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.judgement import transient_level
+from relay_contact.qualification.level import MOST, threshold
 from relay_contact.qualification.page import inputs, warned, write
 from relay_contact.qualification.parts import CLOSED, CONTACT
 from relay_contact.qualification.relay import Model
@@ -140,6 +141,18 @@ def test_a_long_interruption_is_sought_where_the_open_contact_flies() -> None:
     assert found.margin.low < opens.margin.margin < found.margin.margin / 2
     assert f"fail for an instant from {three(opens.margin.linear)} of the level on" in found.limits
     assert found.margin.chance is None
+
+
+def test_a_level_that_nothing_fails_is_not_sought_beyond_what_the_component_allows() -> None:
+    """A hundred times the level that is expected; a test of 30 g would else end at 1e5 g with an error."""
+    tried: list[float] = []
+
+    def holds(level: float) -> tuple[dict[str, float], float]:
+        tried.append(level)
+        return {}, 0.0
+
+    assert threshold(holds, 2.0) == (MOST, [])
+    assert max(tried) < 300
 
 
 @pytest.mark.parametrize("opening", [1e-4, 3e-4, 1e-3])

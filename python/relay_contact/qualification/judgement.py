@@ -402,7 +402,9 @@ def judged(position: Position, test: Test, points: int) -> Finding:
             levels, seen = transient(position, test)
         case _:
             raise TypeError(test)
-    levels = {name: replace(ENDLESS, sure=each.sure) if each.factor >= MOST else each for name, each in levels.items()}
+    for name, each in levels.items():
+        if each.factor >= MOST:
+            levels[name] = replace(ENDLESS, limits=ENDLESS.limits if each.sure == 1 else each.limits, sure=each.sure)
     own = whole(position, test, levels, seen)
     return finding(verdict(own.low, own.high), levels[first_of(levels)].limits, own)
 
@@ -451,7 +453,7 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
     least = Drawn.least(list(drawn.values()))
     natural = position.specimen.response.natural
     kept = test.record.kept(natural) if isinstance(test, History) else 1.0
-    known = kept * min(each.sure for each in levels.values())
+    known = kept * min(1.0, *(each.factor * each.sure / level.factor for each in levels.values()))
     low, high = ends(least, level.factor, known)
     wears = [each.wear(test, levels[each.part].factor) for each in position.parts]
     wear = {"overtravel": wears[0]["overtravel"], "margin": np.min([each["margin"] for each in wears], axis=0).tolist()}

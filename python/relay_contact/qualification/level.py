@@ -7,6 +7,7 @@ import numpy as np
 RESOLUTION, ROUGHLY = 1e-4, 5e-4  # of levels, and of those in draws or at other frequencies
 MOST = 1e3
 """Margin from which on a part counts as one that does not fail: what a test does not shake has an endless one."""
+FAR = 1e2  # times the level that is expected, up to which no level fails: none does
 ASIDE = 0.25  # of a resolution: how far beside the level that is expected just to fail others are tried
 
 Lengths = dict[str, float]
@@ -32,8 +33,10 @@ def threshold(
     while True:
         found, ahead = tried(level)
         low, high, failed = (low, level, found) if found else (level, high, failed)
-        if high <= (1 + resolution) * low or high < 1e-3 * guess or low > 1e3 * guess:
-            return (high if failed else low), list(failed)
+        if high <= (1 + resolution) * low or high < 1e-3 * guess:
+            return high, list(failed)
+        if high == np.inf and low > FAR * guess:
+            return max(low, MOST), []
         if ahead:
             near = sorted([*near, (ahead * level, level)], key=lambda each: abs(each[0]))[:2]
         root = crossing(near)

@@ -271,7 +271,7 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
         return threshold(tried, guess, roughly=True)[0] if low <= frequency <= high else np.inf
 
     exact = [exactly(0.0, guess)]
-    if not (test.steps or test.dwell) and abs(exact[0][1] / guess - 1) > APART:
+    if not (test.steps or test.dwell) and abs(exact[0][1] / guess - 1) > APART and exact[0][1] < MOST:
         found, best = {0.0: exact[0][1]}, 0.0
         while beside := {best - 1, best + 1} - found.keys():
             found |= {place: roughly(place, found[best]) for place in beside}
