@@ -314,11 +314,8 @@ def interrupting_force(contact: Contact, values: Values, threshold: float) -> fl
         case "Holm":
             coefficient, exponent = resistivity / 2 * np.sqrt(np.pi * hardness), 0.5
         case "Barber":
-            law, rough = (
-                component.choice(values, "effects.contactLaw"),
-                component.value(values, "contact.stiffnessExponent"),
-            )
-            exponent = {"Hertz": 1 / 3, "Rough": rough}.get(law, 0.0)
+            rough = component.value(values, "contact.stiffnessExponent")
+            exponent = {"Hertz": 1 / 3, "Rough": rough}.get(component.choice(values, "effects.contactLaw"), 0.0)
             force, stiffness = contact.real("preload.force", "preload.contactStiffness")
             coefficient = resistivity / compliance(component, values) / stiffness * force**exponent
     if constriction <= 0 or not exponent:
