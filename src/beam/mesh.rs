@@ -4,6 +4,8 @@
 //! free end, the moment over `E I` the deflection by two from the clamp: no system of equations, and exact but for the
 //! polynomials on a piece.
 
+use nalgebra::{DMatrix, DVectorViewMut, Dyn, LU};
+
 use crate::beam::pieces::Pieces;
 use crate::math::legendre;
 
@@ -157,6 +159,33 @@ impl<'a> Mesh<'a> {
         self.bent(at_contact, moment.collect())
     }
 
+    /// What an axial compression (N) between clamp and contact adds to loads, of a tension as much as rounding allows; `None` if the spring
+    /// buckles under it.
+    pub fn compression(&self, force: f64) -> Option<Compression<'_>> {
+        let count = self.rule.len();
+        let mut twice = DMatrix::from_row_slice(count, count, &self.rule.partial);
+        for mut column in twice.column_iter_mut() {
+            let sums: Vec<_> = self.rule.integrals(column.as_slice()).collect();
+            column.copy_from_slice(&sums);
+        }
+        let equations = self.stretches.iter().take(self.spring.before_contact).map(|stretch| {
+            let mut matrix = &twice * (force * stretch.half * stretch.half);
+            for (mut column, flexibility) in matrix.column_iter_mut().zip(&stretch.flexibility) {
+                column *= *flexibility;
+            }
+            (matrix + DMatrix::identity(count, count)).lu()
+        });
+        let mut compression =
+            Compression { mesh: self, force, equations: equations.collect(), moved: Vec::new(), rest: 1.0 };
+        let (moved, deflection) = compression.moments(0.0, vec![0.0; self.stretches.len() * count], 1.0);
+        (compression.moved, compression.rest) = (moved, 1.0 - deflection);
+        // With tension it is 1 or more, but for rounding.
+        if force < 0.0 && !(0.5..STEEPEST).contains(&compression.rest) {
+            return self.compression(0.5 * force);
+        }
+        (compression.rest > 0.0).then_some(compression)
+    }
+
     /// Deflection (m) and slope (1) at the contact.
     pub fn at_contact(&self, shape: &Bend) -> (f64, f64) {
         Self::at_end(shape, self.spring.before_contact)
@@ -234,6 +263,60 @@ impl<'a> Mesh<'a> {
         self.bent(clamp, moment)
     }
 }
+
+/// A constant axial compression between clamp and contact. With the deflection `w_c` of the contact it adds `N (w_c - w)` to the moment of
+/// loads: an initial value problem from the clamp on, linear in `w_c`.
+pub struct Compression<'a> {
+    mesh: &'a Mesh<'a>,
+    /// N.
+    force: f64,
+    /// For the moments at the nodes of each stretch up to the contact.
+    equations: Vec<LU<f64, Dyn, Dyn>>,
+    /// Moments at the nodes per deflection of the contact, N.
+    moved: Vec<f64>,
+    /// What they leave of that deflection, 1: 0 at the buckling load; with tension it grows as the hyperbolic cosine.
+    rest: f64,
+}
+
+impl Compression<'_> {
+    /// The spring under the loads that bend it to this shape, and the compression.
+    pub fn added(&self, shape: Bend) -> Bend {
+        let (mut moment, deflection) = self.moments(shape.clamp, shape.moment, 0.0);
+        let at_contact = deflection / self.rest.max(LEAST_REST);
+        for (moment, moved) in moment.iter_mut().zip(&self.moved) {
+            *moment += at_contact * moved;
+        }
+        self.mesh.bent(shape.clamp + self.force * at_contact, moment)
+    }
+
+    /// Moments at the nodes (N m) in place of those of the loads there and at the clamp, were the contact deflected so far (m); and the
+    /// deflection that it has under them.
+    fn moments(&self, clamp: f64, mut moments: Vec<f64>, at_contact: f64) -> (Vec<f64>, f64) {
+        let Mesh { spring, stretches, rule } = self.mesh;
+        let (mut deflection, mut slope) = (0.0, spring.clamp_flexibility * (clamp + self.force * at_contact));
+        let parts = stretches.iter().zip(&self.equations).zip(moments.chunks_exact_mut(rule.len()));
+        for ((stretch, equations), moments) in parts {
+            let half = stretch.half;
+            for (moment, x) in moments.iter_mut().zip(&rule.nodes) {
+                *moment += self.force * (at_contact - deflection - half * (x + 1.0) * slope);
+            }
+            equations.solve_mut(&mut DVectorViewMut::from_slice(moments, rule.len()));
+            let curvature: Vec<f64> = moments.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
+            let slopes: Vec<f64> = rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
+            slope += half * rule.integral(&curvature);
+            deflection += half * rule.integral(&slopes);
+        }
+        (moments, deflection)
+    }
+}
+
+/// Largest factor by which a tension may make rounding grow along the spring, 1. Chosen: half of the digits; a tension of some hundred
+/// buckling loads.
+const STEEPEST: f64 = 1e8;
+
+/// Least [`Compression::rest`] that counts, 1: nearer to the buckling load all shapes would be that of buckling to rounding, and too few
+/// functions be left of them.
+const LEAST_REST: f64 = 1e-2;
 
 /// Share of a shape that must be left of it beside others for it to be another one.
 const DEPENDENT: f64 = 1e-9;

@@ -3,9 +3,12 @@
 //! The loads are the contact force, base acceleration, angular acceleration about the clamp, and force and moment at the end. A spring has
 //! four independent motions of a given frequency; each is a power series in the square of the frequency
 //! whose terms arise from these shapes by `K^-1 M`. So the space holds what moves the spring at any place for frequencies
-//! up to a bound that grows with its size. On a uniform spring it is the space of polynomials of [`galerkin`], and holds the
-//! static shape under a contact force in any case. (E. L. Wilson, M.-W. Yuan, J. M. Dickens, Earthquake Engineering and
+//! up to a bound that grows with its size. Without axial force it is the space of polynomials of [`galerkin`] on a uniform spring, and it
+//! holds the static shape under a contact force in any case. (E. L. Wilson, M.-W. Yuan, J. M. Dickens, Earthquake Engineering and
 //! Structural Dynamics 10 (1982) 813; in blocks: B. Nour-Omid, R. W. Clough, ibid. 13 (1985) 271.)
+//!
+//! `K` is the stiffness under the axial force. That of bending alone would leave out of all shapes what the force does to a taper or a
+//! step, and so of the last ones too, which tell what is missing ([`resolution`](crate::beam::resolution)).
 //!
 //! Of a force of the pusher the space holds the static shape, with its bend. What would follow from it by `K^-1 M` is smooth but for its
 //! seventh derivative, bends like the others, and would take from them a fifth of the modes.
@@ -13,6 +16,7 @@
 //! [`galerkin`]: crate::beam::galerkin
 
 use std::collections::VecDeque;
+use std::iter;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -48,10 +52,15 @@ pub fn static_space(spring: &Pieces, section: &Section) -> Space {
 /// in units of the equivalent section. `None` if it buckles.
 pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64, rubs: bool) -> Option<Space> {
     let mesh = Mesh::new(spring, count.max(STATIC_SHAPES));
+    let pushed = pushed_under(&mesh, section, axial_force)?;
+    let compression = if axial_force == 0.0 { None } else { Some(mesh.compression(axial_force)?) };
+    let under = |shape: Bend| match &compression {
+        Some(compression) => compression.added(shape),
+        None => shape,
+    };
     let [moved, turned] = mesh.shaken();
-    let mut starts = vec![pushed_under(&mesh, section, axial_force)?, moved];
     let [force, moment] = mesh.pushed_at_end();
-    starts.extend([moment, turned]);
+    let mut starts = vec![moved, moment, turned];
     if spring.goes_on() {
         starts.push(force);
         if rubs {
@@ -61,7 +70,8 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
     // Where the contact is, it is the shape of that.
     let elsewhere = spring.before_pusher != Some(spring.before_contact);
     let pusher = mesh.pushed_by_pusher().filter(|_| elsewhere && count > 1);
-    let shapes = krylov(&mesh, pusher, starts, |shape| mesh.swung(shape), count);
+    let starts = iter::once(pushed).chain(starts.into_iter().map(under)).collect();
+    let shapes = krylov(&mesh, pusher.map(under), starts, |shape| under(mesh.swung(shape)), count);
     Some(space(&mesh, &shapes, section))
 }
 
