@@ -12,8 +12,8 @@ from scipy.stats import binom
 from component import COMPONENT, ROOT
 from qualified import CONTACTS, described, judged, placed
 from relay_contact import RelayContactWarning, Values, run
-from relay_contact.component import Array
-from relay_contact.figures import three
+from relay_contact.component import Array, half_sine
+from relay_contact.figures import GRAVITY, three
 from relay_contact.many import side_by_side
 from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, judgement, qualify
 from relay_contact.qualification import position as positions
@@ -162,6 +162,22 @@ def test_a_sine_is_below_a_level_as_long_in_time_as_over_frequency(opening: floa
     for frequency in (300.0, 900.0, 2500.0):
         level = -stays(np.sin(2 * np.pi * frequency * time), opening).min()
         assert level == pytest.approx(float(kept(frequency, opening)), abs=np.pi * frequency * STEP)
+
+
+@pytest.mark.parametrize("values", [{"beam.length": 3e-2}, {"contact.overtravel": -1e-4}])
+def test_a_contact_may_fail_after_a_short_pulse(values: Values) -> None:
+    """A half sine of a tenth of the period: the deepest dip, or the largest deflection, comes after it has ended."""
+    shock = replace(SHOCK, duration=2e-4)
+    margin = judgement.judged(placed(described(values), shock), shock, FEW).margin.margin
+    total = "chatter.totalFalseMake" if "contact.overtravel" in values else "chatter.totalInterruption"
+
+    def fails(level: float) -> bool:
+        peaks = [sign * level * GRAVITY * shock.acceleration for sign in (-1, 1)]
+        runs: list[dict[str, Any]] = [{**values, **half_sine(peak, shock.duration)} for peak in peaks]
+        return any(run("at-rest", component=COMPONENT, stop=0.02, outputs=[total], **each)[total][-1] for each in runs)
+
+    assert not fails(0.99 * margin)
+    assert fails(1.01 * margin)
 
 
 def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:

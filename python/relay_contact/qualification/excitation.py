@@ -378,7 +378,10 @@ class Shock(Transient):
         if self.shape == "half sine":
             time = np.linspace(0.0, self.duration, max(10, round(self.duration / STEP)) + 1)
             generator = {"effects.excitation": "HalfSine", "excitation.duration": self.duration}
-            return Course(time, G * self.acceleration * np.sin(np.pi * time / self.duration), generator)
+            height = np.sin(np.pi * time / self.duration)
+            # Not what rounding leaves: only a pulse that has ended is observed until it is calm.
+            height[-1] = 0.0
+            return Course(time, G * self.acceleration * height, generator)
         time, height = (np.array(each) for each in SHAPES[self.shape])
         return Course(self.duration * time, G * self.acceleration * height)
 

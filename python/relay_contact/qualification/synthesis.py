@@ -66,7 +66,7 @@ def pulse(required: tuple[tuple[float, float], ...], quality: float) -> tuple[Ar
     for _ in range(ROUNDS):
         # At its end it is calm: what is left there is taken off in a line.
         course = amplitudes @ shapes - (amplitudes @ velocity) * back
-        course -= course[-1] * time / time[-1]
+        course -= course[-1] * (time / time[-1])
         ratio = wanted / response(course, step, frequencies, quality)
         excess = ratio.max() / ratio.min()
         if excess < best[0]:
