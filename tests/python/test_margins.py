@@ -180,6 +180,34 @@ def test_a_contact_may_fail_after_a_short_pulse(values: Values) -> None:
     assert fails(1.01 * margin)
 
 
+@pytest.mark.parametrize("how", [{"sweep_time": 1200.0}, {"dwell": True}])
+def test_a_sweep_follows_a_resonance_down(how: dict[str, Any]) -> None:
+    """The resonance of a rough contact falls from 520 to 429 Hz: raised vibrations open it at eight times the level."""
+    values: Values = {
+        "beam.length": 22.35e-3, "beam.width": 1.872e-3, "beam.thickness": 0.20454e-3, "tip.mass": 1.199e-4,
+        "beam.stiffnessDamping": 2.14e-5, "contact.overtravel": 1.989e-4, "contact.damping": 6.18e-7,
+        "effects.contactLaw": "Rough", "contact.stiffness": 1.4588e4, "contact.stiffnessForce": 0.15,
+        "contact.stiffnessExponent": 0.782,
+    }  # fmt: skip
+    test = Sine("sine", "", READ, 0.2, None, (10.0, 1300.0), **how)
+    found = judgement.judged(placed(described(values), test), test, FEW)
+
+    def fails(level: float) -> bool:
+        changes: dict[str, Any] = {
+            **values, "effects.excitation": "LogSweep", "excitation.amplitude": level * 0.2 * GRAVITY,
+            "excitation.frequency": 600.0, "excitation.endFrequency": 400.0, "excitation.duration": 20.0,
+            "chatter.resistanceThreshold": CONTACTS.threshold,
+        }  # fmt: skip
+        total = "chatter.totalInterruption"
+        course = run("at-rest", component=COMPONENT, stop=20.0, step=0.1, outputs=[total], **changes)[total]
+        # After the sudden start.
+        return bool(course[-1] > course[10])
+
+    assert not fails(0.99 * found.margin.margin)
+    assert fails(1.01 * found.margin.margin)
+    assert "a sweep follows down from 520 Hz" in found.limits
+
+
 def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:
     """Dips of a record that take turns bend its margin over the parameters so sharply that no surface follows."""
     margins = np.linspace(2.0, 4.0, 4001)

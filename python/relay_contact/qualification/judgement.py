@@ -146,6 +146,9 @@ def vibration(position: Position, test: Sine, points: int) -> Found:
         response = parts[name].specimen.response
         _, factors = response.sine(test, parts[name].specimen.lasting)
         limits = bound(response, test, frequency)
+        if test.name in parts[name].swept:
+            begin = three(response.weakest(test, 0.0))
+            limits = f"resonance that a sweep follows down from {begin} Hz; a vibration raised there does not fail"
         if weakest[name] != expected[name]:
             limits = "fails at the level of the test where linear theory predicts no failure"
         levels[name] = Level(factor, decides, float(factors.min()), f"{three(frequency)} Hz", limits)

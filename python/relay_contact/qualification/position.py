@@ -261,6 +261,14 @@ class Position:
         return {test.name: trials.sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
 
     @cached_property
+    def swept(self) -> list[str]:
+        """The names of sines that fail at this level in a sweep alone: a vibration raised at the frequency does not."""
+        return [
+            test.name for test in self.tests if isinstance(test, Sine) and not test.steps
+            and not trials.sine_tried(self.specimen, test, self.weakest[test.name][0])(self.weakest[test.name][1])[0]
+        ]  # fmt: skip
+
+    @cached_property
     def middle(self) -> dict[str, tuple[float, list[str], trials.Piece]]:
         """Of each noise, by the test's name: at which part of linear theory it fails, what fails, and the dip."""
         return {name: trials.middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
@@ -285,7 +293,8 @@ class Position:
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             beside = 1.0 if test.steps else self.weakest[test.name][0] / nominal
             frequency = float(np.clip(first * beside, *test.band))
-            tried = trials.sine_tried(specimen, test, frequency)
+            swept = test.name in self.swept
+            tried = trials.swept_tried(specimen, test, first) if swept else trials.sine_tried(specimen, test, frequency)
         else:
             if isinstance(test, Random):
                 piece, sign = self.middle[test.name][2], 1.0

@@ -31,6 +31,11 @@ APART, BESIDE, TRIED = 0.01, 0.05, 9
 """Part by which a level that fails differs from linear theory, from which on the weakest frequency is sought with the
 component; step of the search, as a part of the frequency, at most; frequencies tried before its last."""
 
+ABOVE, FALLS = 3.0, 0.7
+"""Widths above a resonance at which a slow sweep begins, and the part of its frequency that it goes down to."""
+CROSSING, SLOWEST = 1.0, 10.0
+"""Times of settling for which it crosses a width, and all that it takes at most."""
+
 # A long course, such as a record or random vibration, is simulated around its largest dips of force or gap.
 SHORT = 0.25  # s, up to which a course is simulated as a whole
 DIPS = 3
@@ -222,6 +227,43 @@ def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     return tried
 
 
+def swept(specimen: Specimen, test: Sine, frequency: float, factor: float) -> tuple[Lengths, float, float]:
+    """Sweep slowly from above a resonance (Hz) to below it; return the longest failures, `Specimen.ahead`, and where.
+
+    The stiffness of a contact falls as its force does, and with it the resonance: to follow it down takes a lower level
+    than to raise a vibration beside it. Where is the frequency (Hz) at which the least is left.
+    """
+    response = specimen.response
+    width, settling = response.bandwidth(frequency), response.settling()
+    high, low = frequency + ABOVE * width, max(FALLS * frequency, test.band[0])
+    lasting = settling * (1 + min(CROSSING * (high - low) / width, SLOWEST))
+    # Of the excitation: without a limit 0.
+    stroke = (test.double_amplitude or 0.0) / 2
+    most = G * test.acceleration if test.acceleration else float(test.amplitude(np.array(high)))
+    values: Values = {
+        "effects.excitation": "LogSweep", "excitation.amplitude": factor * most, "excitation.frequency": high,
+        "excitation.endFrequency": low, "excitation.duration": lasting, "excitation.displacementLimit": factor * stroke,
+    }  # fmt: skip
+    with specimen.start(values) as contact, contact.explained():
+        # Until its sudden start is forgotten.
+        contact.step(0.0, settling)
+        before = {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
+        time = np.linspace(settling, lasting, SHOWN + 1)
+        rows = contact.drive(time, {}, specimen.watched)
+        left = specimen.observed(rows)[:, 1:]
+        lengths = {name: length for name, length in specimen.longest(contact).items()
+                   if contact.get(specimen.monitors[name][1]) > before[name]}  # fmt: skip
+        lengths |= specimen.leaving(np.diff(time), rows)
+        ahead = specimen.ahead(contact, lengths, left.min(axis=0), (np.pi * frequency * specimen.lasting) ** 2 / 2)
+    at = int(left[:, specimen.names.index(specimen.part) if specimen.part != CONTACT else 0].argmin())
+    return specimen.own(lengths), ahead, float(high * (low / high) ** (time[at + 1] / lasting))
+
+
+def swept_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
+    """Return what tells what of the part fails in a slow sweep across a resonance (Hz), by factors of the level."""
+    return lambda factor: swept(specimen, test, frequency, factor)[:2]
+
+
 def sine_threshold(
     specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None
 ) -> tuple[float, list[str]]:
@@ -257,6 +299,7 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
 
     There, if the component fails as expected, or the test has no other frequency. Else steps from there to lower
     levels, then the vertex of a parabola: the resonance of a contact that is far from linear, or rubs, is elsewhere.
+    At last a sweep, which may follow it further down.
     """
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
     low, high = test.band
@@ -271,7 +314,8 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
         return threshold(tried, guess, roughly=True)[0] if low <= frequency <= high else np.inf
 
     exact = [exactly(0.0, guess)]
-    if not (test.steps or test.dwell) and abs(exact[0][1] / guess - 1) > APART and exact[0][1] < MOST:
+    bends = not test.steps and abs(exact[0][1] / guess - 1) > APART
+    if bends and exact[0][1] < MOST:
         found, best = {0.0: exact[0][1]}, 0.0
         while beside := {best - 1, best + 1} - found.keys():
             found |= {place: roughly(place, found[best]) for place in beside}
@@ -285,7 +329,14 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
                 exact.append(exactly(best + (below - above) / (2 * bent), middle))
         if found[best] < min(level for _, level, _ in exact):
             exact.append(exactly(best, found[best]))
-    return min(exact, key=lambda each: each[1])
+    least = min(exact, key=lambda each: each[1])
+    width = specimen.response.bandwidth(first)
+    level = least[1] * (1 - APART) if least[1] < MOST else guess
+    # A gap, or a force without its least, is not known in steps as long as those of a sweep.
+    if bends and first + ABOVE * width <= high and not specimen.sampled and swept(specimen, test, first, level)[0]:
+        level, failed = threshold(swept_tried(specimen, test, first), min(guess, level))
+        return swept(specimen, test, first, level)[2], level, failed
+    return least
 
 
 @dataclass(frozen=True)
