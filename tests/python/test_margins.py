@@ -155,6 +155,23 @@ def test_a_level_that_nothing_fails_is_not_sought_beyond_what_the_component_allo
     assert max(tried) < 300
 
 
+def test_a_record_is_sought_in_both_directions() -> None:
+    """Interruptions of 0.3 ms in a burst: 1.25 times above the level at which they begin there are none."""
+    values: Values = {
+        "beam.length": 0.0255, "beam.width": 0.00217, "beam.thickness": 0.000703, "tip.mass": 1.28e-05,
+        "beam.stiffnessDamping": 2.21e-06, "contact.overtravel": 0.000324, "contact.curvatureRadius": 0.000971,
+        "contact.damping": 5.12e-06, "effects.axialForce": "FromPreload",
+    }  # fmt: skip
+    time = np.arange(0.0, 0.02, 2e-5)
+    burst = 500 * np.sin(2 * np.pi * 2800 * time) * np.exp(-(((time - 0.01) * 300) ** 2))
+    test = History("burst", "", READ, record=Record(Path("burst.csv"), "a", time, burst), both=True, digest="")
+    own = replace(placed(described(values), test), contacts=replace(CONTACTS, opening=3e-4))
+    ((first,), (reverse,)) = own.pieces["burst"].values()
+    levels = first.threshold(own.specimen, 1.0)[0], reverse.threshold(own.specimen, -1.0)[0]
+    assert levels[1] < 0.9 * levels[0]
+    assert transient_level(own, test)[0].factor == pytest.approx(levels[1], rel=2e-4)
+
+
 @pytest.mark.parametrize("opening", [1e-4, 3e-4, 1e-3])
 def test_a_sine_is_below_a_level_as_long_in_time_as_over_frequency(opening: float) -> None:
     """Up to twice the level of a touch; to a step of time."""

@@ -284,12 +284,13 @@ def transient_level(position: Position, test: Transient) -> tuple[Level, list[Ru
     way, piece = own[0]
     factor, decides = (MOST, []) if position.is_endless(test) else piece.threshold(specimen, ways[way])
     for other, each, lengths, _ in runs:
-        known: Lengths = {}
+        known, level = {}, 0.0
         if factor > 1 and specimen.own(lengths):
             known, level = specimen.own(lengths), 1.0
-        elif each is not piece:
+        elif each is not piece and each.guess >= factor:
             known, level = specimen.own(each.follow(specimen, ways[other] * factor)[0]), factor
-        if known:
+        # Expected to fail below it, one need not at that level: a contact that flies for long may not higher up.
+        if known or (each is not piece and each.guess < factor):
             lower, failed = each.threshold(specimen, ways[other], known, level)
             if lower < factor:
                 way, piece, factor, decides = other, each, lower, failed
