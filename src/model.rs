@@ -10,21 +10,21 @@ use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
 use crate::beam::resolution::Resolution;
 use crate::beam::section::Section;
 use crate::closed_loop::system::ClosedLoop;
-use crate::contact::friction::{Friction, Slip};
+use crate::contact::friction::Friction;
 use crate::contact::law::Law;
 use crate::error::Remark;
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
-use crate::link::{CONTACT, Link, LinkLaw, MAX_LINKS, Port};
+use crate::link::{CONTACT, Link, LinkLaw, Port};
 use crate::math::free_motion::Roots;
 use crate::math::simd::{LANES, Simd};
 use crate::preload::{Initial, Preload};
 use crate::scene::Scene;
 use crate::scene::spring::{Shape, SpringFile};
 use crate::slip_stability::{self, Unstable};
-use crate::state::{LinkState, State};
+use crate::state::State;
 use crate::variables::{ContactLawKind, RealParameter, StringParameter};
 
 /// Deflection at the preload, in lengths of the spring, above which the user is told what a linear beam misses, 1.
@@ -258,8 +258,9 @@ impl Model {
 
     /// At rest in the preload.
     pub fn initial_state(&self, time: f64) -> State {
-        let mut links = [LinkState::default(); MAX_LINKS];
-        for (link, at) in self.links.iter().zip(&mut links) {
+        // Set in place, for the sake of the stack.
+        let mut state = State::empty();
+        for (link, at) in self.links.iter().zip(&mut state.links) {
             at.force = link.force;
             at.closed = link.contact().is_some() && link.force > 0.0;
         }
@@ -267,15 +268,9 @@ impl Model {
             let stiffness = friction.ratio * self.preload.contact_stiffness;
             (stiffness > 0.0).then_some(self.links.get(index)?.force / stiffness)
         });
-        let mut state = State {
-            time,
-            coil: self.initial.coil,
-            links,
-            slip: Slip { way: sprung.unwrap_or_default(), ..Slip::default() },
-            last_kink: time,
-            lengths: StepLengths::new(self.first_step(time)),
-            ..State::empty()
-        };
+        state.slip.way = sprung.unwrap_or_default();
+        (state.time, state.last_kink, state.coil) = (time, time, self.initial.coil);
+        state.lengths = StepLengths::new(self.first_step(time));
         let forces = state.links.iter().map(|link| link.force);
         state.circuits.note(&self.links, forces, time);
         state
