@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::ExitCode;
+use std::process;
 
 use relay_contact::error::StepError;
 use relay_contact::inputs::Inputs;
@@ -48,14 +48,11 @@ fn switches(contact: &Simulation) -> [f64; 2] {
     [RealOutput::ContactLastOpening, RealOutput::ContactLastClosing].map(|output| contact.real(output))
 }
 
-fn main() -> ExitCode {
-    run().map_or_else(
-        |error| {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        },
-        |()| ExitCode::SUCCESS,
-    )
+fn main() {
+    if let Err(error) = run() {
+        eprintln!("{error}");
+        process::exit(1);
+    }
 }
 
 fn run() -> Result<(), Box<dyn Error>> {

@@ -6,20 +6,17 @@ use std::env;
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
-use std::process::ExitCode;
+use std::process;
 use std::time::Instant;
 
 use relay_contact::scene::file::SceneFile;
 use relay_contact::simulation::Simulation;
 
-fn main() -> ExitCode {
-    run().map_or_else(
-        |error| {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        },
-        |()| ExitCode::SUCCESS,
-    )
+fn main() {
+    if let Err(error) = run() {
+        eprintln!("{error}");
+        process::exit(1);
+    }
 }
 
 fn run() -> Result<(), Box<dyn Error>> {

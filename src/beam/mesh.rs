@@ -61,16 +61,22 @@ impl<'a> Mesh<'a> {
         };
         let (mut deflection, mut slope) = (0.0, self.spring.clamp_flexibility * clamp);
         for (stretch, moment) in self.stretches.iter().zip(bend.moment.chunks_exact(self.rule.len())) {
-            let half = stretch.half;
-            let curvature: Vec<f64> = moment.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
-            let slopes: Vec<f64> = self.rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
-            bend.deflection.extend(self.rule.integrals(&slopes).map(|sum| deflection + half * sum));
-            slope += half * self.rule.integral(&curvature);
-            deflection += half * self.rule.integral(&slopes);
+            let (slopes, end) = self.along(stretch, moment, (deflection, slope));
+            bend.deflection.extend(self.rule.integrals(&slopes).map(|sum| deflection + stretch.half * sum));
             bend.slope.extend(slopes);
-            bend.ends.push((deflection, slope));
+            bend.ends.push(end);
+            (deflection, slope) = end;
         }
         bend
+    }
+
+    /// Slopes at the nodes of a stretch under moments there (N m); and deflection (m) and slope at its end, from those at its start.
+    fn along(&self, stretch: &Stretch, moments: &[f64], (deflection, slope): (f64, f64)) -> (Vec<f64>, (f64, f64)) {
+        let half = stretch.half;
+        let curvature: Vec<f64> = moments.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
+        let slopes: Vec<f64> = self.rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
+        let end = (deflection + half * self.rule.integral(&slopes), slope + half * self.rule.integral(&curvature));
+        (slopes, end)
     }
 
     /// The spring under a force per length at the nodes (N/m), and a force (N) and a moment (N m) at the end of each stretch: the
@@ -293,20 +299,17 @@ impl Compression<'_> {
     /// deflection that it has under them.
     fn moments(&self, clamp: f64, mut moments: Vec<f64>, at_contact: f64) -> (Vec<f64>, f64) {
         let Mesh { spring, stretches, rule } = self.mesh;
-        let (mut deflection, mut slope) = (0.0, spring.clamp_flexibility * (clamp + self.force * at_contact));
+        let mut start = (0.0, spring.clamp_flexibility * (clamp + self.force * at_contact));
         let parts = stretches.iter().zip(&self.equations).zip(moments.chunks_exact_mut(rule.len()));
         for ((stretch, equations), moments) in parts {
-            let half = stretch.half;
+            let (deflection, slope) = start;
             for (moment, x) in moments.iter_mut().zip(&rule.nodes) {
-                *moment += self.force * (at_contact - deflection - half * (x + 1.0) * slope);
+                *moment += self.force * (at_contact - deflection - stretch.half * (x + 1.0) * slope);
             }
             equations.solve_mut(&mut DVectorViewMut::from_slice(moments, rule.len()));
-            let curvature: Vec<f64> = moments.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
-            let slopes: Vec<f64> = rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
-            slope += half * rule.integral(&curvature);
-            deflection += half * rule.integral(&slopes);
+            (_, start) = self.mesh.along(stretch, moments, start);
         }
-        (moments, deflection)
+        (moments, start.0)
     }
 }
 
