@@ -338,11 +338,8 @@ def main(arguments: list[str] | None = None) -> int:
         # Whoever read what was printed has enough.
         sys.stdout = None
         return 0
-    except RelayContactError as error:
-        print(f"relay-contact: {error}", file=sys.stderr)
-        return 1
-    except OSError as error:
-        told = f"{error.filename}: {error.strerror}" if error.filename else error
+    except (RelayContactError, OSError) as error:
+        told = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
         print(f"relay-contact: {told}", file=sys.stderr)
         return 1
     return 0

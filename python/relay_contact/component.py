@@ -236,7 +236,7 @@ class Component:
             case "String":
                 return str(variable.start or "")
             case "Enumeration":
-                return next(each for each, number in self.choices(name).items() if number == int(variable.start))
+                return self.numbered(name, variable.start)
             case _:
                 return float(variable.start)
 
@@ -247,11 +247,11 @@ class Component:
     def choice(self, values: Values, name: str) -> str:
         """Return the choice of a parameter among these, else its start value."""
         value = values.get(name, self.start(name))
-        return (
-            value
-            if isinstance(value, str)
-            else {number: each for each, number in self.choices(name).items()}[int(value)]
-        )
+        return value if isinstance(value, str) else self.numbered(name, value)
+
+    def numbered(self, name: str, wanted: Value) -> str:
+        """Return the choice of a number."""
+        return next(each for each, number in self.choices(name).items() if number == int(wanted))
 
     def started(self, values: Values | None = None) -> "Contact":
         """Give an instance that is initialised with these parameters and inputs, at time 0.

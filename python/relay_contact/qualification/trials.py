@@ -167,6 +167,25 @@ class Specimen:
         away = {part.name: float(lengths[self.left(part, rows) <= 0].sum()) for part in self.held}
         return {name: length for name, length in away.items() if length}
 
+    def failing(self, contact: Contact, time: Array, steps: Array, frequency: float) -> tuple[Lengths, Array, float]:
+        """Vibrate (Hz) from time to time (s), in steps of these lengths (s).
+
+        Return the longest failures of contacts that fail in that time, what is left in each step, and `ahead`.
+        """
+
+        def totals() -> dict[str, float]:
+            return {name: contact.get(total) for name, (_, total, _) in self.monitors.items()}
+
+        before = totals()
+        rows = contact.drive(time, {}, self.watched)
+        left = self.observed(rows)[:, 1:]
+        # Of failures that last long enough; also of one without an end.
+        still = [name for name, total in totals().items() if total > before[name]]
+        lengths = {name: length for name, length in self.longest(contact).items() if name in still}
+        lengths |= self.leaving(steps, rows)
+        least = left.min(axis=0).tolist()
+        return lengths, left, self.ahead(contact, lengths, least, (np.pi * frequency * self.lasting) ** 2 / 2)
+
 
 def steady(specimen: Specimen, frequency: float, amplitude: float, gently: bool) -> tuple[Lengths, list[float]]:
     """Vibrate until the start is forgotten; return the longest failures of contacts that still fail, and what is left.
@@ -186,21 +205,11 @@ def vibrated(
     time = (rising + steadily) / frequency
     with specimen.start(sine(frequency, amplitude, rising / frequency)) as contact, contact.explained():
         contact.step(0.0, time)
-
-        def totals() -> dict[str, float]:
-            return {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
-
-        before = totals()
         pieces = WATCHED * (SAMPLES if specimen.sampled else 1)
         step = 1 / frequency * WATCHED / pieces
-        rows = contact.drive(time + step * np.arange(pieces + 1.0), {}, specimen.watched)
-        left = specimen.observed(rows)[:, 1:]
-        # Of failures that last long enough; also of one without an end.
-        still = [name for name, total in totals().items() if total > before[name]]
-        lengths = {name: length for name, length in specimen.longest(contact).items() if name in still}
-        lengths |= specimen.leaving(np.full(pieces, step), rows)
-        least = left.min(axis=0).tolist()
-        return lengths, least, specimen.ahead(contact, lengths, least, (np.pi * frequency * specimen.lasting) ** 2 / 2)
+        steps = np.full(pieces, step)
+        lengths, left, ahead = specimen.failing(contact, time + step * np.arange(pieces + 1.0), steps, frequency)
+        return lengths, left.min(axis=0).tolist(), ahead
 
 
 def sweep(
@@ -247,14 +256,8 @@ def swept(specimen: Specimen, test: Sine, frequency: float, factor: float) -> tu
     with specimen.start(values) as contact, contact.explained():
         # Until its sudden start is forgotten.
         contact.step(0.0, settling)
-        before = {name: contact.get(total) for name, (_, total, _) in specimen.monitors.items()}
         time = np.linspace(settling, lasting, SHOWN + 1)
-        rows = contact.drive(time, {}, specimen.watched)
-        left = specimen.observed(rows)[:, 1:]
-        lengths = {name: length for name, length in specimen.longest(contact).items()
-                   if contact.get(specimen.monitors[name][1]) > before[name]}  # fmt: skip
-        lengths |= specimen.leaving(np.diff(time), rows)
-        ahead = specimen.ahead(contact, lengths, left.min(axis=0), (np.pi * frequency * specimen.lasting) ** 2 / 2)
+        lengths, left, ahead = specimen.failing(contact, time, np.diff(time), frequency)
     at = int(left[:, specimen.names.index(specimen.part) if specimen.part != CONTACT else 0].argmin())
     return specimen.own(lengths), ahead, float(high * (low / high) ** (time[at + 1] / lasting))
 
