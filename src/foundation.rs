@@ -44,9 +44,8 @@ impl Model {
         let tolerance = scene.solver.effective_tolerance();
         let bending_force = bending_force(scene, &springs);
         let force_scale = preload.force.max(bending_force);
-        let parting = |law: Law| law.parting(tolerance, force_scale);
-        let contact = parting(law(scene, power, &preload)?);
-        let laws = Laws { contact, parallel: parallel.map(parting), second: second.map(parting) };
+        let contact = law(scene, power, &preload)?;
+        let laws = Laws { contact, parallel, second };
         let own = blow(scene, bending_force, &power);
         let counts = counts(scene, &springs, (&own, [parallel, second], bending_force));
         let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {

@@ -104,10 +104,17 @@ impl Model {
             Roots::of(of(|mode| mode.omega_squared), of(|mode| mode.damping))
         };
         self.roots = self.modes.chunks(LANES).map(roots).collect();
-        let Assembly { ports, links, roles } =
+        let Assembly { ports, mut links, roles } =
             Assembly::new((&self.scene, &self.modes, &self.preload), laws, self.armature.as_ref());
+        let tolerance = self.scene.solver.effective_tolerance();
+        for link in &mut links {
+            if let LinkLaw::Contact(law) = &mut link.law {
+                *law = law.judged(tolerance, self.force_scale);
+            }
+        }
         self.slowest = Slowest::of(&self.modes, &ports);
-        (self.law, self.ports, self.links, self.roles) = (laws.contact, ports, links, roles);
+        self.law = links.get(CONTACT).and_then(Link::contact).copied().unwrap_or(laws.contact);
+        (self.ports, self.links, self.roles) = (ports, links, roles);
         if let Some((_, friction)) = self.friction() {
             // Of a contact open at rest the force scale.
             let at_rest = self.preload.force;
@@ -130,7 +137,7 @@ impl Model {
         let tolerance = self.scene.solver.effective_tolerance();
         self.tolerance = Tolerance::new(tolerance, self.force_scale);
         // Friction keeps its share of the force that the scene has.
-        self.link(Laws { contact: self.law.parting(tolerance, self.force_scale), parallel, second });
+        self.link(Laws { contact: self.law, parallel, second });
         self
     }
 

@@ -67,10 +67,12 @@ pub struct Law {
     pub offset: f64,
     /// What opens the contact.
     pub opening: Opening,
-    /// Force that counts as none where the contact opens, N: [`Law::parting`].
+    /// Force that counts as none where the contact opens, N. It and the next two are set by [`Law::judged`].
     pub traces: f64,
-    /// Indentation up to which the contact counts as open, m: [`Law::parting`].
+    /// Indentation up to which the contact counts as open, m.
     pub least: f64,
+    /// Tangent stiffness at the force scale, N/m: by it errors of a contact are judged that is open or hardly touches.
+    pub firm: f64,
 }
 
 /// Reduced modulus E* of the two materials, Pa.
@@ -87,7 +89,16 @@ pub(crate) fn compliance(contact: &Contact) -> f64 {
 impl Law {
     /// A power of the indentation.
     pub fn power(coefficient: f64, exponent: f64, damping: f64) -> Self {
-        Self { coefficient, exponent, damping, offset: 0.0, opening: Opening::Parting, traces: 0.0, least: 0.0 }
+        Self {
+            coefficient,
+            exponent,
+            damping,
+            offset: 0.0,
+            opening: Opening::Parting,
+            traces: 0.0,
+            least: 0.0,
+            firm: 0.0,
+        }
     }
 
     /// Smooth spheres: Hertz, from the two materials and the radius of curvature.
@@ -145,15 +156,16 @@ impl Law {
         Self::of(&as_first)
     }
 
-    /// With what counts as none of a force at this scale (N), computed to a relative tolerance. A contact softer than that of
-    /// Hertz parts so gradually that its force stays below the error allowed for long, where a computed force changes its sign
-    /// at random, and then below rounding, where nothing tells closed from open.
+    /// With its stiffness at a force scale (N), and what counts as none of a force computed to a relative tolerance of that. A contact
+    /// softer than that of Hertz parts so gradually that its force stays below the error allowed for long, where a computed
+    /// force changes its sign at random, and then below rounding, where nothing tells closed from open.
     #[must_use]
-    pub(crate) fn parting(self, tolerance: f64, scale: f64) -> Self {
+    pub(crate) fn judged(self, tolerance: f64, scale: f64) -> Self {
+        let firm = self.tangent_stiffness(scale);
         if self.exponent <= HERTZ {
-            return self;
+            return Self { firm, ..self };
         }
-        Self { traces: TRACES * tolerance * scale, least: self.indentation(ROUNDING * scale), ..self }
+        Self { traces: TRACES * tolerance * scale, least: self.indentation(ROUNDING * scale), firm, ..self }
     }
 
     /// `d^(p-1)`, m^(p-1), of a positive indentation (m).

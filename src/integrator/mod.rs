@@ -89,8 +89,9 @@
 //!   the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and
 //!   Approximation Practice, 2013, chapters 8 and 19).
 //!
-//! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it. Where inputs
-//! have just changed, forces bend, and an `m` that passes through zero shows nothing of it: there `m` is at least what the
+//! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it, the greatest of
+//! all contacts; that of one that is open or hardly touches is at the force scale, as it will meet what these errors make. Where
+//! inputs have just changed, forces bend, and an `m` that passes through zero shows nothing of it: there `m` is at least what the
 //! polynomials through fewer nodes let expect. In flight the estimate is what `m_a` and the quadrature do to the approach, times the
 //! stiffness the contact would have at the force scale.
 //!

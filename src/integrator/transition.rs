@@ -12,7 +12,7 @@ use crate::state::State;
 pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut Events) {
     let (Some(link), time) = (model.links.get(index), state.time) else { return };
     if let Some(law) = link.contact() {
-        state.force_error.keep(law.tangent_stiffness(model.force_scale), model.force_scale);
+        state.force_error.keep(law.firm, model.force_scale);
     }
     state.force_error.begin(&model.slowest, link.port);
     let Some(at) = state.links.get_mut(index) else { return };

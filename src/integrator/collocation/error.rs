@@ -52,7 +52,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         // What a wrong way does, what a wrong velocity does until a damper takes it back, and where there is no damper.
         let (mut of_way, mut passing, mut kept) = (0.0, 0.0, 0.0);
         let (mut squares, mut sum, mut largest) = (0.0, 0.0, f64::MIN_POSITIVE);
-        let (mut inside, mut reaction, mut rounding) = (0.0, 0.0_f64, 0.0_f64);
+        let (mut inside, mut gain, mut rounding) = (0.0, 0.0_f64, 0.0_f64);
         for a in 0..in_use::<L>(linked.unknowns.count) {
             let unknown = linked.unknowns.get(a);
             let (link, (d, rate)) = (&model.links[unknown.link], wrong.ends[a]);
@@ -61,7 +61,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             nodes.tangent = tangent;
             of_way += (tangent.stiffness * d).abs();
             passing += (tangent.damping * rate).abs();
-            reaction = reaction.max(tangent.gain / (1.0 + tangent.gain));
+            gain = gain.max(tangent.gain);
             let force = |most: f64, force: &f64| most.max((link.force + force).abs());
             largest = nodes.forces.iter().fold(largest, force);
             rounding = rounding.max(FORCE_ROUNDING * largest.max(link.force));
@@ -86,6 +86,13 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             }
             sum += missed;
         }
+        // Contacts that are open, or hardly touch, will answer what slow modes do, too.
+        for link in &model.links {
+            let Some(law) = link.contact() else { continue };
+            let (d, rate) = step.response(link.port, link.port).columns.at_end(&[1.0; S]);
+            gain = gain.max(law.firm * (d + law.damping * rate));
+        }
+        let reaction = gain / (1.0 + gain);
         let base = free.start_defect.abs();
         let missed = model.inertia * free.missed_mean;
         let along = model.friction().map_or(0.0, |(_, friction)| friction.inertia);
@@ -199,10 +206,9 @@ pub(super) fn estimate_in_flight<const S: usize>(
         let defect = if free.axial.is_some() { 1.0 } else { free.start_defect.abs() };
         let most = |values: &Nodal<S>| greatest(values) * defect;
         let wrong = most(&rows.d) + law.damping * most(&rows.rate) + missed_velocity * (model.memory + law.damping);
-        let stiffness = law.tangent_stiffness(model.force_scale);
-        at_end = at_end.max(stiffness * wrong);
+        at_end = at_end.max(law.firm * wrong);
         // At the end the velocity is that of the quadrature.
-        inside = inside.max(stiffness * (wrong + model.memory * most(&rows.rate)));
+        inside = inside.max(law.firm * (wrong + model.memory * most(&rows.rate)));
     }
     trial.error = Estimate::lasting(at_end);
     trial.slow_error = model.inertia * free.missed_mean;

@@ -158,7 +158,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// Engagement that counts as zero where a contact opens, m.
     fn located(&self, link: (&Link, &LinkState)) -> f64 {
         let Whole { model, state, .. } = self.whole;
-        let stiffness = link.0.contact().map_or(1.0, |law| law.tangent_stiffness(model.force_scale));
+        let stiffness = link.0.contact().map_or(1.0, |law| law.firm);
         (self.whole.model.tolerance.at_event / stiffness).max(engagement_rounding(model, link, state))
     }
 }

@@ -61,7 +61,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         let ((y, slope), phase) = if let Some(sign) = whole.state.slip.phase.sign() {
             // The friction force that is missing for the slip velocity.
             let damping = law.damping;
-            let stiffness = friction.ratio * law.tangent_stiffness(whole.model.force_scale);
+            let stiffness = friction.ratio * law.firm;
             let wrong = scaled(&whole.trial.slip.rates, sign * stiffness * (damping + whole.length));
             let before = if is_long::<S>(whole.length, damping) {
                 dot::<S, Separate>(&wrong, &whole.collocation.at_start)
