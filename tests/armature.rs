@@ -37,6 +37,31 @@ fn close(a: f64, b: f64, share: f64) {
     assert!((a - b).abs() <= share * b.abs(), "{a} {b}");
 }
 
+/// A stop that presses lets steps grow beyond what shows a flight.
+#[test]
+fn what_is_read_of_a_flying_spring_does_not_depend_on_an_armature_at_rest() {
+    let mut scene = alone();
+    scene.armature.unbalance = 0.0;
+    scene.beam.stiffness_damping = 1e-6;
+    scene.effects.excitation = ExcitationKind::HalfSine;
+    scene.excitation.amplitude = -500.0;
+    scene.excitation.duration = 1e-3;
+    let motion = |pusher: PusherKind| {
+        let mut scene = scene.clone();
+        scene.effects.pusher = pusher;
+        let mut simulation = Simulation::new(&scene, &coil(0.0), 0.0).unwrap();
+        let read = |k: u32| {
+            simulation.step(&coil(0.0), 1e-5 * f64::from(k), 1e-5).unwrap();
+            simulation.real(RealOutput::TipDisplacement)
+        };
+        (0..1000).map(read).collect::<Vec<_>>()
+    };
+    // A force wrong by the tolerance bends the spring by this.
+    let allowed = scene.solver.tolerance * scene.contact.overtravel.abs();
+    let found = largest_difference(&motion(PusherKind::Armature), &motion(PusherKind::None));
+    assert!(found < 2.0 * allowed, "{found} {allowed}");
+}
+
 /// Balance of forces in both.
 #[test]
 fn the_coil_says_which_of_two_positions_it_has() {

@@ -24,12 +24,18 @@ impl<const S: usize> Whole<'_, S> {
         self.model.tolerance.read(largest)
     }
 
-    /// Error of what is read inside the trial, in the error `allowed` there (N): of the force, in flight of the indentation.
+    /// Error of what is read inside the trial, in the error `allowed` there (N): of forces, and in flight of the indentation.
     pub(crate) fn inaccuracy(&self, allowed: f64) -> f64 {
+        let flies = !self.state.contact().closed && self.collocation.variable != Variable::Root;
+        let misread = if flies { self.misread() / allowed } else { 0.0 };
+        // Not `max`, which would hide NaN.
+        misread + if self.state.is_closed() { self.inaccuracy_of_forces(allowed) } else { 0.0 }
+    }
+
+    /// The same of forces alone, where a link is closed.
+    pub(crate) fn inaccuracy_of_forces(&self, allowed: f64) -> f64 {
         let trial = self.trial;
-        if !self.state.is_closed() {
-            self.misread() / allowed
-        } else if self.collocation.variable == Variable::Root {
+        if self.collocation.variable == Variable::Root {
             // By the root of time the polynomial goes through the force at the start. At its first node it is as steep as the inverse
             // of a root there, beside the mean.
             let steepest = 0.5 / self.collocation.places.first().copied().unwrap_or(1.0);

@@ -41,7 +41,7 @@ impl<const S: usize> Locator<'_, S> {
         let value = |y: f64| excess(value_at(&polynomial, y));
         let turns = turning_points(whole.model.simd, &polynomial);
         let allowed = whole.readable();
-        let inaccuracy = whole.inaccuracy(allowed);
+        let inaccuracy = whole.inaccuracy_of_forces(allowed);
         let is_accurate = inaccuracy <= 1.0;
         if !is_accurate && whole.collocation.variable == Variable::Root {
             return false;
