@@ -218,11 +218,7 @@ def plot_table(given: argparse.Namespace) -> None:
     """Draw a table of outputs, such as `relay-contact run` writes, beside it as PNG."""
     from relay_contact.plot import draw
 
-    if given.sweep:
-        first, last, _, duration = given.sweep
-        if min(first, last, duration) <= 0:
-            raise RelayContactError("--sweep: FIRST, LAST and DURATION have to be greater than 0")
-    print(draw(given.table, given.title, given.sweep))
+    print(draw(given.table, given.table.stem))
 
 
 def finite(text: str) -> float:
@@ -321,9 +317,6 @@ def line() -> argparse.ArgumentParser:
 
     add = command("plot", plot_table, "draw a table of outputs")
     add("table", type=Path, help="CSV file with a column `time`")
-    add("--title", default="", help="title of the figure")
-    text = "draw over the frequency of a logarithmic sweep [Hz, s] instead of time"
-    add("--sweep", type=finite, nargs=4, metavar=("FIRST", "LAST", "START", "DURATION"), help=text)
     return whole
 
 

@@ -510,14 +510,10 @@ def test_arguments_of_the_command_that_do_not_fit_are_refused(
 @pytest.mark.filterwarnings("ignore:loadtxt")
 def test_what_cannot_be_drawn_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table, head = tmp_path / "table.csv", "time,contact.force\n"
-    for text, sweep, message in (
-        *((head, each, "DURATION have to be greater than 0") for each in ("0 100 0 1", "10 -1 0 1", "10 100 0 0")),
-        (f"{head}0,1\n1,2\n", "10 100 5 1", "table.csv: no row from 5 to 6 s, in the time of the sweep"),
-        *((each, "", "table.csv: not a table as `relay-contact run`") for each in (head, f"{head}0,x\n", "\udcff\n")),
-    ):
+    for text in (head, f"{head}0,x\n", "\udcff\n"):
         table.write_bytes(text.encode(errors="surrogateescape"))
-        assert main(["plot", str(table), *(["--sweep", *sweep.split()] if sweep else [])]) == 1
-        assert message in capsys.readouterr().err
+        assert main(["plot", str(table)]) == 1
+        assert "table.csv: not a table as `relay-contact run`" in capsys.readouterr().err
 
 
 def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
@@ -529,6 +525,8 @@ def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
     table.write_text("time,contact.force\n0,1\n0.5,0.2\n0.7,0\n0.8,0\n0.9,0.3\n1,0.3\n")
     for sweep in (None, (10.0, 1000.0, 0.5, 0.4)):
         plot.draw(table, "title", sweep)
+    with pytest.raises(RelayContactError, match=r"table.csv: no row from 5 to 6 s, in the time of the sweep"):
+        plot.draw(table, "title", (10.0, 100.0, 5.0, 1.0))
     over_time, over_frequency = (figure.axes[0].lines[0].get_xydata() for figure in drawn)
     assert over_time == pytest.approx(np.array([[0, 100], [0.5, 20], [0.7, 0], [0.8, 0], [0.9, 30], [1, 30]]))
     # Logarithmic: in the middle of the duration the root of both.
