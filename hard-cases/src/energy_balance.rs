@@ -1,4 +1,4 @@
-//! The energy balance of the component, `energy.balance`. `tests/energy_balance.rs` checks it independently.
+//! The energy balance of the component, `energy.balance`. Unit tests of the integrator check it independently.
 
 use anyhow::Result;
 use relay_contact::inputs::Inputs;
