@@ -1,11 +1,9 @@
-//! The generated base acceleration. [`waveforms`]: against closed forms; [`noise`]: the random one; [`response`]: what
-//! they do to the contact.
+//! The generated base acceleration. [`waveforms`]: limits of their closed forms, and the standards (the closed forms themselves:
+//! `tests/python/test_effects_excitation.py`); [`noise`]: the random one; [`response`]: what they do to the contact.
 
 mod noise;
 mod response;
 mod waveforms;
-
-use std::f64::consts::{PI, TAU};
 
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Generator;
@@ -65,38 +63,6 @@ fn undriven(_: f64, _: f64) -> Inputs {
 
 fn equal_steps(size: f64, count: u32) -> Vec<f64> {
     (1..=count).map(|k| f64::from(k) * size).collect()
-}
-
-/// The acceleration from its definition, as far as it goes without a sum of sines.
-fn closed_form(scene: &Scene, time: f64) -> f64 {
-    let e = &scene.excitation;
-    let tau = time - e.start_time;
-    let within = |frequency: f64| {
-        if e.displacement_limit > 0.0 {
-            let limit = (TAU * frequency).powi(2) * e.displacement_limit;
-            e.amplitude.signum() * e.amplitude.abs().min(limit)
-        } else {
-            e.amplitude
-        }
-    };
-    if tau < 0.0 {
-        return 0.0;
-    }
-    match scene.effects.excitation {
-        ExcitationKind::Sine => {
-            let reached = if tau < e.rise_time { 0.5 - 0.5 * (PI * tau / e.rise_time).cos() } else { 1.0 };
-            reached * within(e.frequency) * (TAU * e.frequency * tau + e.phase).sin()
-        }
-        ExcitationKind::HalfSine if tau <= e.duration => e.amplitude * (PI * tau / e.duration).sin(),
-        ExcitationKind::LogSweep if tau < e.duration => {
-            let r = e.end_frequency / e.frequency;
-            let grown = r.powf(tau / e.duration);
-            let angle = TAU * e.frequency * e.duration / r.ln() * (grown - 1.0);
-            within(e.frequency * grown) * (angle + e.phase).sin()
-        }
-        ExcitationKind::Random => Generator::new(scene).acceleration(time),
-        _ => 0.0,
-    }
 }
 
 /// Scenes of every waveform that start at 0.3 ms and are over, where they end, at 2.3 ms.

@@ -6,7 +6,7 @@ use relay_contact::variables::{ContactLawKind, ExcitationKind, IntegerOutput, Re
 use testing::near;
 use testing::scenes::{LAWS, accelerated, force_scale};
 
-use super::{G, Generator, closed_form, equal_steps, every_waveform, forces, half_sine, random, sweep, undriven, with};
+use super::{G, Generator, equal_steps, every_waveform, forces, half_sine, random, sweep, undriven, with};
 
 /// The same course from outside, in straight pieces, is wrong by the square of their length.
 #[test]
@@ -18,13 +18,11 @@ fn waveforms_from_outside_converge_to_the_generators() {
         let every = equal_steps(1e-4, 30);
         let (exact, _) = forces(&scene, &every, undriven);
         // Where it jumps, what follows counts from there on.
-        let before = |time: f64| Generator::new(&scene).acceleration_before(time);
+        let generator = Generator::new(&scene);
         let errors = [2_u32, 1].map(|size| {
             let course = |time: f64, end: f64| {
-                accelerated(
-                    closed_form(&scene, time + 1e-12),
-                    (before(end) - closed_form(&scene, time + 1e-12)) / (end - time),
-                )
+                let start = generator.acceleration(time + 1e-12);
+                accelerated(start, (generator.acceleration_before(end) - start) / (end - time))
             };
             let (all, _) = forces(&quiet, &equal_steps(1e-6 * f64::from(size), 3000 / size), course);
             let some = all.iter().skip(100 / size as usize - 1).step_by(100 / size as usize);

@@ -1,27 +1,10 @@
-//! The accelerations themselves, against their closed forms and the standards.
+//! The accelerations themselves, against limits of their closed forms and the standards.
 
 use std::f64::consts::TAU;
-use testing::near;
 
 use relay_contact::variables::ExcitationKind;
 
-use super::{G, Generator, closed_form, every_waveform, excited, half_sine, sweep, with};
-
-#[test]
-fn waveforms_are_those_of_their_closed_forms() {
-    for (name, scene) in every_waveform() {
-        let generator = Generator::new(&scene);
-        let mut largest = 0.0_f64;
-        for k in 0..3000 {
-            let time = 1e-6 * (f64::from(k) + 0.5);
-            let (found, expected) = (generator.acceleration(time), closed_form(&scene, time));
-            largest = largest.max(found.abs());
-            near(format_args!("{name} at {time}"), found, expected, 1e-11 * 300.0);
-            assert_eq!(generator.is_active(time), found != 0.0, "{name} at {time}");
-        }
-        assert!(largest > 30.0, "{name}: {largest}");
-    }
-}
+use super::{G, Generator, excited, half_sine, sweep, with};
 
 #[test]
 fn a_sweep_between_like_frequencies_is_the_sine() {
