@@ -410,6 +410,9 @@ def test_a_number_that_no_verdict_depends_on_is_no_evidence() -> None:
     assert sine.weakest_evidence == "read in the standard"
     # The density of the noise is from memory, too.
     assert Standard.read("MIL-PRF-28776").tests[1].weakest_evidence == "from memory"
+    # None is stated.
+    other = Standard.read("MIL-STD-810")
+    assert other.tests[0].evidence == other.contacts.evidence == "from memory"
 
 
 def test_a_course_begins_gently_where_it_does_not_begin_at_rest() -> None:

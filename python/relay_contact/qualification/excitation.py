@@ -141,7 +141,7 @@ class Course:
 class Test:
     """A test by its name, the clause that its numbers come from, and where these were read.
 
-    The evidence is that of all numbers, or of each by its name.
+    The evidence is that of all numbers, or of each by its name; in a file, the weakest where none is stated.
     """
 
     name: Annotated[str, Field(min_length=1)]
@@ -158,6 +158,12 @@ class Test:
             return self.evidence
         told = [level for name, level in self.evidence.items() if name not in IDLE]
         return max(told, key=LEVELS.index, default=LEVELS[-1])
+
+    @model_validator(mode="before")
+    @classmethod
+    def is_the_weakest_unless_stated(cls, given: Any) -> Any:  # noqa: ANN401
+        """Return the entries of a file with their evidence."""
+        return {"evidence": LEVELS[-1], **given} if isinstance(given, dict) else given
 
     @model_validator(mode="after")
     def names_its_numbers(self) -> "Test":

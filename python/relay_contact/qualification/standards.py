@@ -35,7 +35,7 @@ class Contacts:
     voltage: Annotated[float, within(1e-6, 1e4)]
     current: Annotated[float, within(1e-9, 1e4)]
     clause: str
-    evidence: excitation.Evidence | dict[str, excitation.Evidence]
+    evidence: excitation.Evidence | dict[str, excitation.Evidence] = excitation.LEVELS[-1]
 
     def monitored(self, monitor: Monitor) -> "Contacts":
         """Return the limits with another monitor."""
