@@ -19,7 +19,8 @@ from relay_contact.qualification.parts import check_held
 from relay_contact.qualification.standards import Contacts, Monitor
 from relay_contact.spring import PREFIX, by_modes, is_entry, known_of
 
-OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum")
+OF_THE_TEST = ("excitation.", "effects.excitation", "chatter.", "effects.chatter", "effects.extremes", "second.minimum",
+               "solver.tolerance")  # fmt: skip
 """Beginnings of the names of parameters that the tests set: in the file of a relay they would contradict them."""
 NEEDED = {
     "pusher": ("position",),
@@ -29,8 +30,19 @@ NEEDED = {
 """Parameters that the tables of parts that hold the contact have to have, by table."""
 TABLES = tuple(NEEDED)
 """These tables, each named as the group of parameters in it; a table that is there is in the model."""
-OF_THE_POSITION = ("coil.relativeCurrent", "pusher.displacement")
-"""Inputs that say where the parts are, and stay as they are in all tests."""
+OF_THE_POSITION = {
+    "coil.relativeCurrent": ("Armature", "1 at nominal current, 0 without current"),
+    "pusher.displacement": ("Prescribed", "where the pusher stays"),
+}
+"""Inputs that say where the parts are, the same in all tests; each needed by one choice of effects.pusher, as what."""
+SWITCHES = {
+    "second.": ("effects.secondContact",), "parallel.": ("effects.parallelContact",), "fixed.": ("fixed.file",),
+    "friction.": ("effects.friction", "Coulomb"), "tip.contactHeight": ("effects.friction", "Coulomb"),
+    "contact.stiffness": ("effects.contactLaw", "Rough"), "beam.axialForce": ("effects.axialForce", "Prescribed"),
+    "pusher.": ("effects.pusher", "Prescribed", "Armature"), "armature.": ("effects.pusher", "Armature"),
+    **{name: ("effects.pusher", kind) for name, (kind, _) in OF_THE_POSITION.items()},
+}  # fmt: skip
+"""By the beginning of the names of parameters, the longest last: what they are not used without."""
 HALF, STEP, FURTHER = 10, 1e-5, 1e-4
 """Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
 
@@ -130,10 +142,10 @@ class Relay:
                 # Parameters that do not fit together.
                 blow(component, positions[name])
                 check_held(component, positions[name])
-            needed = OF_THE_POSITION[0]
-            if content.armature is not None and needed not in positions[name]:
-                text = f"parameters.{needed}: missing, allowed is 1 at nominal current, 0 without current"
-                raise RelayContactError(f"{path}:{schema.line(path, place)}: {schema.dotted(place)}.{text}")
+            for needed, (kind, allowed) in OF_THE_POSITION.items():
+                if positions[name].get("effects.pusher") == kind and needed not in positions[name]:
+                    text = f"parameters.{needed}: missing, allowed is {allowed}"
+                    raise RelayContactError(f"{path}:{schema.line(path, place)}: {schema.dotted(place)}.{text}")
         uncertainty = uncertainties(path, content.uncertainty, positions, component)
         for number, name in enumerate(content.correlation.names):
             if name not in uncertainty:
@@ -155,12 +167,36 @@ class Relay:
                 for values in positions.values():
                     blow(component, {**values, **changed})
                     check_held(component, {**values, **changed})
+        check_used(path, content, component, [[{**own, **each.parameters} for each in models.values()]
+                                              for own in positions.values()])  # fmt: skip
         title, roughness = content.title or path.stem, content.contact.roughness
         axes = {name: participations(path, name, own, positions) for name, own in content.axes.items()}
         return cls(
             title, positions, uncertainty, tuple(models.values()), content.monitor, roughness, content.correlation,
             axes, digest(path.read_bytes()),
         )  # fmt: skip
+
+
+def check_used(path: Path, content: Content, component: Component, known: list[list[Values]]) -> None:
+    """Refuse a parameter of a part that the relay does not have where it is given: without a word it would be without.
+
+    `known` are the parameters of each position, by each model.
+    """
+    every = [values for own in known for values in own]
+    tables: list[tuple[schema.Place, Mapping[str, Any], list[Values]]] = [
+        ((), {name: own for name in TABLES if (own := getattr(content, name))}, every),
+        (("parameters",), content.parameters, every),
+        *((("position", at, "parameters"), each.parameters, known[at]) for at, each in enumerate(content.position)),
+        *((("model", at, "parameters"), each.parameters, [own[at] for own in known])
+          for at, each in enumerate(content.model)),
+    ]  # fmt: skip
+    for place, table, where in tables:
+        for name, keys, value in schema.leaves(table):
+            switch, *on = next((own for start, own in reversed(SWITCHES.items()) if name.startswith(start)), (name,))
+            found = (values.get(switch, component.start(switch)) for values in where)
+            if switch != name and not any(each in on if on else each for each in found):
+                needed = f"{switch} = {' or '.join(on)}" if on else switch
+                raise schema.refused(path, (*place, *keys), value, f"not used without {needed}")
 
 
 def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> None:
@@ -189,7 +225,7 @@ def parameters(path: Path, table: Mapping[str, Any], place: schema.Place, compon
         if name.startswith(OF_THE_TEST):
             raise schema.refused(path, (*place, *keys), value, "the tests of a standard set it, not the relay")
         group = name.partition(".")[0]
-        if place == ("parameters",) and (group in TABLES or name == "effects.pusher"):
+        if (place == ("parameters",) and group in TABLES) or name == "effects.pusher":
             where = f"its place is the table [{group}]" if group in TABLES else "the tables [pusher], [armature] say it"
             raise schema.refused(path, (*place, *keys), value, where)
     return schema.variables(path, table, place, component, inputs=OF_THE_POSITION)
