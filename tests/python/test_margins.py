@@ -231,6 +231,7 @@ def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:
     exact, wrong = (judgement.ends(positions.Drawn(margins, error, 0), 3.0, 1.0) for error in (0.0, 0.03))
     assert exact == pytest.approx((2.05, 3.95), rel=1e-3)
     assert wrong == pytest.approx((exact[0] * 0.97, exact[1] * 1.03))
+    assert judgement.ends(positions.Drawn(margins, 1.1, 0), 3.0, 1.0)[0] == 0
 
 
 def recorded(seed: int) -> positions.Position:

@@ -89,6 +89,23 @@ def test_what_holds_the_armature_makes_no_other_part_weaker() -> None:
     assert min(before, key=lambda name: before[name]) == CONTACT
 
 
+def test_a_part_that_a_shock_hardly_shakes_fails_where_another_takes_it_along() -> None:
+    weak = replace(LONG, acceleration=0.04)
+    own = position(WEAK, weak)
+    assert own.parts[0].is_endless(weak)
+    levels, _ = transient(own, weak)
+    found, first = levels[CONTACT].factor, levels[CORE].factor
+
+    def opens(factor: float) -> bool:
+        shock = half_sine(-factor * weak.acceleration * G, weak.duration)
+        with COMPONENT.started({**WEAK, **shock, "chatter.resistanceThreshold": CONTACTS.threshold}) as contact:
+            contact.step(0.0, 0.1)
+            return contact.get("chatter.count") > 0
+
+    assert opens(1.002 * found)
+    assert not any(map(opens, np.linspace(first, 0.998 * found, 30)))
+
+
 def leaves(values: Values, frequency: float, level: float, step: float) -> bool:
     """Return whether a steady vibration, gently raised, takes the armature from its core, by small steps."""
     with COMPONENT.started({**values, **sine(frequency, level, 12 / frequency)}) as contact, contact.explained():

@@ -23,13 +23,13 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     Transient,
     straight,
 )
-from relay_contact.qualification.level import MOST, RESOLUTION, Lengths
+from relay_contact.qualification.level import MOST, RESOLUTION, Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, MOVED, NONE, OPEN, STOP
 from relay_contact.qualification.position import WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import FLIES, Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
-from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, sine_threshold, steady, sweep
+from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, sine_threshold, sine_tried, sweep
 from relay_contact.records import ATTENUATED
 
 MANY = 10_000
@@ -40,6 +40,8 @@ SHOWN_TIME = 10e-3  # s around a dip
 POINTS = 1500  # of a course that is shown as a whole
 FOLLOWS = 0.9
 """Part of its level by linear theory below which another part than the first fails because that has failed."""
+RISING, FURTHER = 1.15, 10.0
+"""Factor from one level to the next, and of the least margin up to which others are tried once a part has failed."""
 BEYOND = 2.0
 """Factor of the least margin from which on another part does not matter for that of the relay."""
 
@@ -167,10 +169,21 @@ def beside(parts: dict[str, Position], test: Sine, weakest: dict[str, tuple[floa
     first = min(weakest, key=lambda name: weakest[name][1])
     frequency, level, _ = weakest[first]
     for name in weakest.keys() - {first}:
-        specimen, factor = parts[name].specimen, min(weakest[name][1], BEYOND * level)
-        amplitude = factor * float(test.amplitude(np.array(frequency)))
-        if failing := specimen.own(steady(specimen, frequency, amplitude, gently=True)[0]):
-            weakest[name] = frequency, *sine_threshold(specimen, test, frequency, factor, failing)
+        if found := follows(sine_tried(parts[name].specimen, test, frequency), level, weakest[name][1]):
+            weakest[name] = frequency, *found
+
+
+def follows(tried: Tried, first: float, own: float) -> tuple[float, list[str]] | None:
+    """Return the level below its own at which a part fails as another has, which fails first, and what of it.
+
+    Nothing is linear from there on, and what fails at a level need not at a higher one: all are tried.
+    """
+    level = first * (1 + RESOLUTION)
+    while level < min(own, FURTHER * first):
+        if failing := tried(level)[0]:
+            return threshold(tried, level, failing)
+        level *= RISING
+    return None
 
 
 def bound(response: Response, test: Sine, weakest: float) -> str:
@@ -256,6 +269,12 @@ def transient(position: Position, test: Transient) -> Found:
     specimen = position.specimen
     found = {each.part: transient_level(each, test) for each in shaken(position, test)}
     levels = {each.part: found[each.part][0] if each.part in found else ENDLESS for each in position.parts}
+    first = min(found, key=lambda name: levels[name].factor)
+    _, _, decisive, _, signed = found[first]
+    for each in position.parts:
+        tried, own = decisive.tried(each.specimen, float(np.sign(signed))), levels[each.part]
+        if each.part != first and (known := follows(tried, abs(signed), own.factor)):
+            levels[each.part] = replace(own, factor=known[0], decides=known[1], weakest=levels[first].weakest)
     told = {name: own[3] for part, own in found.items() for name in specimen.names if part in (name, CONTACT)}
     failed, least = merged(position, [run[2:] for own in found.values() for run in own[1]])
     _, shown, piece, _, level = found[CONTACT]
@@ -481,4 +500,4 @@ def ends(drawn: Drawn, factor: float, known: float) -> tuple[float, float]:
     lack some of a vibration, and with all of it less of its level may fail.
     """
     low, high = np.quantile(drawn.margins, LIMITS, method="hazen").tolist()
-    return known * min(low * (1 - drawn.error), factor), max(high * (1 + drawn.error), factor)
+    return known * min(low * max(1 - drawn.error, 0.0), factor), max(high * (1 + drawn.error), factor)
