@@ -27,7 +27,7 @@ from relay_contact.qualification.parts import CLOSED, CONTACT
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import kept, respond, stays
 from relay_contact.qualification.results import Chance
-from relay_contact.qualification.trials import Specimen, pieces, sine_least, steady
+from relay_contact.qualification.trials import Specimen, Weakest, pieces, sine_least, steady
 from relay_contact.qualification.words import failures, passes_text, tighten
 from relay_contact.records import Record
 
@@ -130,7 +130,7 @@ def test_a_long_interruption_is_sought_where_the_open_contact_flies() -> None:
     values: Values = {"effects.axialForce": "FromPreload", "tip.mass": 2.26e-5}
     contacts, test = replace(CONTACTS, opening=3e-4), replace(SINE, double_amplitude=None)
     specimen = Specimen(COMPONENT, values, contacts, respond(COMPONENT, values, contacts.threshold))
-    _, margin, _ = sine_least(specimen, test)
+    margin = sine_least(specimen, test).factor
     assert not fails(specimen, test, 0.985 * margin)
     assert fails(specimen, test, 1.01 * margin)
     noise = recorded(1)
@@ -223,6 +223,31 @@ def test_a_sweep_follows_a_resonance_down(how: dict[str, Any]) -> None:
     assert not fails(0.99 * found.margin.margin)
     assert fails(1.01 * found.margin.margin)
     assert "a sweep follows down from 520 Hz" in found.limits
+
+
+def test_a_contact_may_fail_where_a_multiple_of_the_frequency_resonates() -> None:
+    """A rough contact that resonates at 2690 Hz opens at 1240 Hz before it does at 1480 Hz, where the range ends."""
+    values: Values = {
+        "beam.length": 13.1e-3, "beam.width": 7.4e-3, "beam.thickness": 0.21e-3, "tip.mass": 8e-6,
+        "beam.stiffnessDamping": 2e-6, "contact.overtravel": 2.2e-4, "contact.damping": 2e-6,
+        "effects.contactLaw": "Rough", "contact.stiffness": 3e4, "contact.stiffnessForce": 0.2,
+        "contact.stiffnessExponent": 0.6,
+    }  # fmt: skip
+    test = Sine("sine", "", READ, 20.0, None, (10.0, 1480.0), sweep_time=1200.0)
+    found = judgement.judged(placed(described(values), test), test, FEW)
+
+    def fails(level: float) -> bool:
+        changes: dict[str, Any] = {
+            **values, "effects.excitation": "LogSweep", "excitation.amplitude": level * 20.0 * GRAVITY,
+            "excitation.frequency": 1400.0, "excitation.endFrequency": 1100.0, "excitation.duration": 2.0,
+            "chatter.resistanceThreshold": CONTACTS.threshold,
+        }  # fmt: skip
+        count = "chatter.count"
+        return run("at-rest", component=COMPONENT, stop=2.0, step=0.1, outputs=[count], **changes)[count][-1] > 0
+
+    assert not fails(0.99 * found.margin.margin)
+    assert fails(1.01 * found.margin.margin)
+    assert "2 times this frequency resonates" in found.limits
 
 
 def test_an_interval_reaches_as_far_out_as_its_draws_may_be_wrong() -> None:
@@ -366,7 +391,7 @@ def test_what_a_search_has_missed_is_found_at_the_level_of_the_test() -> None:
         shocked = transient_level(own, test)[0]
         assert shocked.factor == pytest.approx(right.factor, rel=2e-4)
         assert shocked.weakest == "opening direction"
-    own.weakest["sine"] = 1000.0, 1.2, [CLOSED]
+    own.weakest["sine"] = Weakest(1000.0, 1.2, [CLOSED])
     shaken = judgement.vibration(own, tests[0], FEW)[0][CONTACT]
     assert shaken.factor <= 1
     assert "fails at the level of the test where linear theory predicts no failure" in shaken.limits

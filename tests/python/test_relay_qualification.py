@@ -40,7 +40,7 @@ def position(values: Values, *tests: Asked, current: float = 1.0) -> Position:
 
 def least_level(each: Position, test: Sine) -> float:
     """Return the least level (m/s2) that fails a part in a sine of steps."""
-    frequency, factor, _ = each.weakest[test.name]
+    frequency, factor, *_ = each.weakest[test.name]
     return factor * float(test.amplitude(np.array(frequency)))
 
 
@@ -119,7 +119,7 @@ def test_the_weakest_frequency_is_that_of_brute_force() -> None:
     soft = {**WEAK, "armature.stopStiffness": 2e4, "armature.mass": 2e-3, "armature.stopRestitution": 0.7}
     test = Sine("sine", "", "from memory", acceleration=1.0, frequencies=(200.0, 1200.0), sweep_rate=1.0)
     core = next(each for each in position(soft, test).parts if each.part == CORE)
-    frequency, factor, _ = core.weakest[test.name]
+    frequency, factor, *_ = core.weakest[test.name]
 
     def brute(tried: float) -> float:
         low, high = 0.5 * factor, 8 * factor

@@ -29,7 +29,7 @@ from relay_contact.qualification.position import WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import FLIES, Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
-from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, sine_threshold, sine_tried, sweep
+from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, Weakest, sine_threshold, sine_tried, sweep
 from relay_contact.records import ATTENUATED
 
 MANY = 10_000
@@ -128,29 +128,31 @@ def vibration(position: Position, test: Sine, points: int) -> Found:
     parts = {each.part: each for each in position.parts}
     weakest = {name: each.weakest[test.name] for name, each in parts.items()}
     low, high = test.band
-    near = weakest[CONTACT][0] * np.linspace(0.9, 1.1, points // 4)
+    near = weakest[CONTACT].frequency * np.linspace(0.9, 1.1, points // 4)
     around = (np.geomspace(low, high, points), near[(near > low) & (near < high)])
     own = [np.array(test.steps)] if test.steps else [] if test.dwell else around
-    chosen = np.unique(np.concatenate((*own, [frequency for frequency, *_ in weakest.values()])))
+    chosen = np.unique(np.concatenate((*own, [each.frequency for each in weakest.values()])))
     rows = sweep(specimen, test, chosen, [each.specimen.response for each in parts.values()])
     lengths = {name: [length.get(name, 0.0) for length, _ in rows] for name in specimen.names}
     expected = dict(weakest)
     for name, each in parts.items():
         failures = [each.specimen.own(length) for length, _ in rows]
         worst = int(np.argmax([max(length.values(), default=0.0) for length in failures]))
-        if weakest[name][1] > 1 and failures[worst]:
+        if weakest[name].factor > 1 and failures[worst]:
             frequency = float(chosen[worst])
-            weakest[name] = frequency, *sine_threshold(each.specimen, test, frequency, 1.0, failures[worst])
+            weakest[name] = Weakest(frequency, *sine_threshold(each.specimen, test, frequency, 1.0, failures[worst]))
     beside(parts, test, weakest)
     least = {name: [left[number] for _, left in rows] for number, name in enumerate(specimen.names)}
     levels = {}
-    for name, (frequency, factor, decides) in weakest.items():
+    for name, (frequency, factor, decides, order) in weakest.items():
         response = parts[name].specimen.response
         _, factors = response.sine(test, parts[name].specimen.lasting)
         limits = bound(response, test, frequency)
-        if test.name in parts[name].swept:
+        if order == 1:
             begin = three(response.weakest(test, 0.0))
             limits = f"resonance that a sweep follows down from {begin} Hz; a vibration raised there does not fail"
+        elif order:
+            limits = f"{order} times this frequency resonates, as the contact is not linear before it opens, either"
         if weakest[name] != expected[name]:
             limits = "fails at the level of the test where linear theory predicts no failure"
         levels[name] = Level(factor, decides, float(factors.min()), f"{three(frequency)} Hz", limits)
@@ -164,13 +166,13 @@ def vibration(position: Position, test: Sine, points: int) -> Found:
     return levels, seen
 
 
-def beside(parts: dict[str, Position], test: Sine, weakest: dict[str, tuple[float, float, list[str]]]) -> None:
+def beside(parts: dict[str, Position], test: Sine, weakest: dict[str, Weakest]) -> None:
     """Replace the levels of parts that fail below what linear theory says, where another part has failed first."""
-    first = min(weakest, key=lambda name: weakest[name][1])
-    frequency, level, _ = weakest[first]
+    first = min(weakest, key=lambda name: weakest[name].factor)
+    frequency, level, *_ = weakest[first]
     for name in weakest.keys() - {first}:
-        if found := follows(sine_tried(parts[name].specimen, test, frequency), level, weakest[name][1]):
-            weakest[name] = frequency, *found
+        if found := follows(sine_tried(parts[name].specimen, test, frequency), level, weakest[name].factor):
+            weakest[name] = Weakest(frequency, *found)
 
 
 def follows(tried: Tried, first: float, own: float) -> tuple[float, list[str]] | None:

@@ -256,17 +256,9 @@ class Position:
         return {"overtravel": list(self.worn), "margin": [ratio * value for value in margins]}
 
     @cached_property
-    def weakest(self) -> dict[str, tuple[float, float, list[str]]]:
-        """Of each sine, by the test's name: the frequency (Hz) that fails at the least level, its factor, and what."""
+    def weakest(self) -> dict[str, trials.Weakest]:
+        """Where each sine fails at the least level, by the test's name."""
         return {test.name: trials.sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
-
-    @cached_property
-    def swept(self) -> list[str]:
-        """The names of sines that fail at this level in a sweep alone: a vibration raised at the frequency does not."""
-        return [
-            test.name for test in self.tests if isinstance(test, Sine) and not test.steps
-            and not trials.sine_tried(self.specimen, test, self.weakest[test.name][0])(self.weakest[test.name][1])[0]
-        ]  # fmt: skip
 
     @cached_property
     def middle(self) -> dict[str, tuple[float, list[str], trials.Piece]]:
@@ -291,10 +283,13 @@ class Position:
         specimen = replace(self.specimen, values=values, response=response)
         if isinstance(test, Sine):
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
-            beside = 1.0 if test.steps else self.weakest[test.name][0] / nominal
-            frequency = float(np.clip(first * beside, *test.band))
-            swept = test.name in self.swept
-            tried = trials.swept_tried(specimen, test, first) if swept else trials.sine_tried(specimen, test, frequency)
+            weakest = self.weakest[test.name]
+            if order := weakest.order:
+                frequency = first if order == 1 else response.natural / order
+                tried = trials.swept_tried(specimen, test, frequency, order)
+            else:
+                beside = 1.0 if test.steps else weakest.frequency / nominal
+                tried = trials.sine_tried(specimen, test, float(np.clip(first * beside, *test.band)))
         else:
             if isinstance(test, Random):
                 piece, sign = self.middle[test.name][2], 1.0

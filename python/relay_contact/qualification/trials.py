@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,8 @@ component; step of the search, as a part of the frequency, at most; frequencies 
 
 ABOVE, FALLS = 3.0, 0.7
 """Widths above a resonance at which a slow sweep begins, and the part of its frequency that it goes down to."""
+ORDERS = (2, 3)
+"""Multiples of a frequency that may resonate where it does not."""
 CROSSING, SLOWEST = 1.0, 10.0
 """Times of settling for which it crosses a width, and all that it takes at most."""
 
@@ -236,15 +238,18 @@ def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     return tried
 
 
-def swept(specimen: Specimen, test: Sine, frequency: float, factor: float) -> tuple[Lengths, float, float]:
+def swept(
+    specimen: Specimen, test: Sine, frequency: float, factor: float, order: int = 1
+) -> tuple[Lengths, float, float]:
     """Sweep slowly from above a resonance (Hz) to below it; return the longest failures, `Specimen.ahead`, and where.
 
     The stiffness of a contact falls as its force does, and with it the resonance: to follow it down takes a lower level
-    than to raise a vibration beside it. Where is the frequency (Hz) at which the least is left.
+    than to raise a vibration beside it. Where is the frequency (Hz) at which the least is left. Of a higher order it is
+    the frequency whose multiple resonates, as the force of a contact that is not linear has harmonics.
     """
     response = specimen.response
-    width, settling = response.bandwidth(frequency), response.settling()
-    high, low = frequency + ABOVE * width, max(FALLS * frequency, test.band[0])
+    width, settling = response.bandwidth(order * frequency) / order, response.settling()
+    high, low = min(frequency + ABOVE * width, test.band[1]), max(FALLS * frequency, test.band[0])
     lasting = settling * (1 + min(CROSSING * (high - low) / width, SLOWEST))
     # Of the excitation: without a limit 0.
     stroke = (test.double_amplitude or 0.0) / 2
@@ -262,9 +267,9 @@ def swept(specimen: Specimen, test: Sine, frequency: float, factor: float) -> tu
     return specimen.own(lengths), ahead, float(high * (low / high) ** (time[at + 1] / lasting))
 
 
-def swept_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
+def swept_tried(specimen: Specimen, test: Sine, frequency: float, order: int) -> Tried:
     """Return what tells what of the part fails in a slow sweep across a resonance (Hz), by factors of the level."""
-    return lambda factor: swept(specimen, test, frequency, factor)[:2]
+    return lambda factor: swept(specimen, test, frequency, factor, order)[:2]
 
 
 def sine_threshold(
@@ -274,16 +279,29 @@ def sine_threshold(
     return threshold(sine_tried(specimen, test, frequency), guess, failing)
 
 
-def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]:
-    """Return the frequency (Hz) of a sweep that fails at the least level, its factor of the level, and which contacts.
+class Weakest(NamedTuple):
+    """Where a sine fails at the least level."""
+
+    frequency: float
+    """Hz"""
+    factor: float
+    """Of the level."""
+    failed: list[str]
+    order: int = 0
+    """Of the resonance that a sweep follows down to it; 0: a vibration raised there fails."""
+
+
+def sine_least(specimen: Specimen, test: Sine) -> Weakest:
+    """Return the frequency of a sweep that fails at the least level.
 
     That of linear theory, unless another fails at a lower level in the component, of those at which the contact opens
-    there: an open contact is not linear. What the test hardly shakes does not fail.
+    there: an open contact is not linear. Below its resonance, a contact that is not linear before it opens, either, may
+    do so where a multiple of the frequency resonates. What the test hardly shakes does not fail.
     """
     known, factors = specimen.response.sine(test, specimen.lasting)
     at = int(factors.argmin())
     if factors[at] >= MOST:
-        return float(known[at]), MOST, []
+        return Weakest(float(known[at]), MOST, [])
     least = sine_near(specimen, test, float(known[at]), float(factors[at]))
     _, touches = specimen.response.sine(test, 0.0)
     order = touches.argsort()
@@ -294,10 +312,14 @@ def sine_least(specimen: Specimen, test: Sine) -> tuple[float, float, list[str]]
         frequency, level = float(known[each]), least[1] * (1 - APART)
         if touches[each] < level and sine_tried(specimen, test, frequency)(level)[0]:
             least = sine_near(specimen, test, frequency, level)
+    natural, (low, high) = specimen.response.natural, test.band
+    for multiple in ORDERS if high < natural and not test.steps else ():
+        if low < natural / multiple < high / FALLS:
+            least = followed(specimen, test, natural / multiple, multiple, least, float(factors[at]))
     return least
 
 
-def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tuple[float, float, list[str]]:
+def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> Weakest:
     """Return what `sine_least` does, near a frequency (Hz) and a level that are expected.
 
     There, if the component fails as expected, or the test has no other frequency. Else steps from there to lower
@@ -307,9 +329,9 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
     step = 1 + min(BESIDE, specimen.response.bandwidth(first) / first / 2)
     low, high = test.band
 
-    def exactly(place: float, guess: float) -> tuple[float, float, list[str]]:
+    def exactly(place: float, guess: float) -> Weakest:
         frequency = first * step**place
-        return frequency, *sine_threshold(specimen, test, frequency, guess)
+        return Weakest(frequency, *sine_threshold(specimen, test, frequency, guess))
 
     def roughly(place: float, guess: float) -> float:
         frequency = first * step**place
@@ -317,9 +339,9 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
         return threshold(tried, guess, roughly=True)[0] if low <= frequency <= high else np.inf
 
     exact = [exactly(0.0, guess)]
-    bends = not test.steps and abs(exact[0][1] / guess - 1) > APART
-    if bends and exact[0][1] < MOST:
-        found, best = {0.0: exact[0][1]}, 0.0
+    bends = not test.steps and abs(exact[0].factor / guess - 1) > APART
+    if bends and exact[0].factor < MOST:
+        found, best = {0.0: exact[0].factor}, 0.0
         while beside := {best - 1, best + 1} - found.keys():
             found |= {place: roughly(place, found[best]) for place in beside}
             best = min(found, key=lambda place: found[place])
@@ -330,16 +352,22 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> tup
             bent = below - 2 * middle + above
             if np.isfinite(bent) and bent > 0:
                 exact.append(exactly(best + (below - above) / (2 * bent), middle))
-        if found[best] < min(level for _, level, _ in exact):
+        if found[best] < min(each.factor for each in exact):
             exact.append(exactly(best, found[best]))
-    least = min(exact, key=lambda each: each[1])
-    width = specimen.response.bandwidth(first)
-    level = least[1] * (1 - APART) if least[1] < MOST else guess
-    # A gap, or a force without its least, is not known in steps as long as those of a sweep.
-    if bends and first + ABOVE * width <= high and not specimen.sampled and swept(specimen, test, first, level)[0]:
-        level, failed = threshold(swept_tried(specimen, test, first), min(guess, level))
-        return swept(specimen, test, first, level)[2], level, failed
-    return least
+    least = min(exact, key=lambda each: each.factor)
+    return followed(specimen, test, first, 1, least, guess) if bends else least
+
+
+def followed(specimen: Specimen, test: Sine, first: float, order: int, least: Weakest, guess: float) -> Weakest:
+    """Return where a slow sweep across a resonance fails, by its frequency and order, if below the least level so far.
+
+    A gap, or a force without its least, is not known in steps as long as those of a sweep.
+    """
+    level = least.factor * (1 - APART) if least.factor < MOST else guess
+    if specimen.sampled or not swept(specimen, test, first, level, order)[0]:
+        return least
+    level, failed = threshold(swept_tried(specimen, test, first, order), min(guess, level))
+    return Weakest(swept(specimen, test, first, level, order)[2], level, failed, order)
 
 
 @dataclass(frozen=True)
