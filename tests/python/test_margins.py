@@ -197,6 +197,22 @@ def test_a_contact_may_fail_after_a_short_pulse(values: Values) -> None:
     assert fails(1.01 * margin)
 
 
+@pytest.mark.parametrize("shape", ["half sine", "terminal-peak sawtooth", "trapezoid"])
+def test_how_far_an_open_contact_is_from_a_make_is_known_during_a_pulse_and_after_it(shape: Any) -> None:
+    """A level in a draw is where this vanishes: known at the corners of a pulse alone, a margin was 25 % too high."""
+    values: Values = {
+        "beam.length": 14.5e-3, "beam.width": 4e-3, "beam.thickness": 0.266e-3, "beam.stiffnessDamping": 6.7e-6,
+        "contact.overtravel": -4.4e-5, "contact.damping": 1.1e-5,
+    }  # fmt: skip
+    test = Shock("shock", "", READ, 30.0, 2.9e-3, shape)
+    specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold))
+    for sign in (1.0, -1.0):
+        (piece,) = pieces(specimen, test.course(), sign)
+        level, _ = piece.threshold(specimen, sign)
+        # By linear theory; the least gap may be between two steps.
+        assert piece.tried(specimen, sign)(0.98 * level)[1] == pytest.approx(0.02, abs=2e-3)
+
+
 @pytest.mark.parametrize("how", [{"sweep_time": 1200.0}, {"dwell": True}])
 def test_a_sweep_follows_a_resonance_down(how: dict[str, Any]) -> None:
     """The resonance of a rough contact falls from 520 to 429 Hz: raised vibrations open it at eight times the level."""

@@ -399,7 +399,7 @@ class Piece:
             acceleration = np.zeros(len(time))
         if points or specimen.sampled:
             dense = np.linspace(0.0, min(3 * course.end, time[-1]), points + 1)
-            if specimen.held and specimen.sampled:
+            if specimen.sampled:
                 every = STEP * np.arange(1, time[-1] / STEP)
                 # Not beside points of the course that rounding alone sets apart.
                 near = np.searchsorted(time, every - STEP / 4) < np.searchsorted(time, every + STEP / 4)
