@@ -198,7 +198,7 @@ def test_a_contact_may_fail_after_a_short_pulse(values: Values) -> None:
 
 
 @pytest.mark.parametrize("shape", ["half sine", "terminal-peak sawtooth", "trapezoid"])
-def test_how_far_an_open_contact_is_from_a_make_is_known_during_a_pulse_and_after_it(shape: Any) -> None:
+def test_how_far_an_open_contact_is_from_a_make_is_known_during_a_pulse_and_after_it(shape: Any) -> None:  # noqa: ANN401
     """A level in a draw is where this vanishes: known at the corners of a pulse alone, a margin was 25 % too high."""
     values: Values = {
         "beam.length": 14.5e-3, "beam.width": 4e-3, "beam.thickness": 0.266e-3, "beam.stiffnessDamping": 6.7e-6,

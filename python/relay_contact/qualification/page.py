@@ -15,7 +15,7 @@ from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
 from relay_contact.qualification.parts import MOVED, NONE, PUSHER
 from relay_contact.qualification.position import DRAWS, FEWEST
-from relay_contact.qualification.relay import Relay
+from relay_contact.qualification.relay import Relay, lacking
 from relay_contact.qualification.results import Assessment, Tested
 from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.words import HEAD, REASONS, at_rest, reasons, rows, time_text
@@ -49,17 +49,8 @@ SHAKEN = {
     ),
 }
 """By effects.pusher: what is judged, and what of it the base moves beside the contacts, the least first."""
-SETTINGS: tuple[str, ...] = ("excitation.", "chatter.", "solver.")
-"""Parameters that are not the relay's."""
-UNUSED: dict[str, tuple[str, ...]] = {
-    "effects.secondContact": ("second.",),
-    "effects.friction": ("friction.", "effects.friction"),
-    "effects.contactLaw": ("contact.stiffness",),
-    "effects.parallelContact": ("parallel.",),
-    "effects.pusher": ("pusher.", "armature.", "effects.pusher"),
-    "fixed.file": ("fixed.",),
-}
-"""Parameters without effect where this one has its start value."""
+HIDDEN = ("excitation.", "chatter.", "solver.", "effects.friction", "effects.pusher")
+"""Parameters that are not the relay's, and choices of what it does not have at their start values."""
 NOT_USED = "not used"
 SECTION = ("beam.length", "beam.width", "beam.thickness")
 """What a file of the spring takes the place of."""
@@ -112,16 +103,13 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
     columns = columns_of(relay)
     described = units(component.description)
     own = {name for values in columns.values() for name in values}
-    hidden = SETTINGS
-    for name, prefixes in UNUSED.items():
-        if {values.get(name, component.start(name)) for values in columns.values()} == {component.start(name)}:
-            hidden += prefixes
     without = [replaced(values) for values in columns.values()]
     found = []
     for name, variable in component.variables.items():
         if name in SPRING_FILES or (variable.causality != "parameter" and name not in own):
             continue
-        if name not in own and (name.startswith(hidden) or all(name in names for names in without)):
+        idle = lacking(component, name, [*columns.values()]) or all(name in names for names in without)
+        if name not in own and (idle or name.startswith(HIDDEN)):
             continue
 
         def text(value: Any, name: str = name) -> str:  # noqa: ANN401

@@ -177,6 +177,15 @@ class Relay:
         )  # fmt: skip
 
 
+def lacking(component: Component, name: str, known: list[Values]) -> str:
+    """Return what a parameter is not used without, if some positions by some models all lack it."""
+    switch, *on = next((own for start, own in reversed(SWITCHES.items()) if name.startswith(start)), (name,))
+    found = (values.get(switch, component.start(switch)) for values in known)
+    if switch == name or any(each in on if on else each for each in found):
+        return ""
+    return f"{switch} = {' or '.join(on)}" if on else switch
+
+
 def check_used(path: Path, content: Content, component: Component, known: list[list[Values]]) -> None:
     """Refuse a parameter of a part that the relay does not have where it is given: without a word it would be without.
 
@@ -192,10 +201,7 @@ def check_used(path: Path, content: Content, component: Component, known: list[l
     ]  # fmt: skip
     for place, table, where in tables:
         for name, keys, value in schema.leaves(table):
-            switch, *on = next((own for start, own in reversed(SWITCHES.items()) if name.startswith(start)), (name,))
-            found = (values.get(switch, component.start(switch)) for values in where)
-            if switch != name and not any(each in on if on else each for each in found):
-                needed = f"{switch} = {' or '.join(on)}" if on else switch
+            if needed := lacking(component, name, where):
                 raise schema.refused(path, (*place, *keys), value, f"not used without {needed}")
 
 
