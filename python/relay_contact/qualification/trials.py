@@ -304,7 +304,10 @@ def sine_least(specimen: Specimen, test: Sine) -> Weakest:
         return Weakest(float(known[at]), MOST, [])
     least = sine_near(specimen, test, float(known[at]), float(factors[at]))
     _, touches = specimen.response.sine(test, 0.0)
-    order = touches.argsort()
+    if specimen.component.value(specimen.values, "effects.parallelContact"):
+        # Once the other contact has opened nothing is linear: any frequency may be the weakest.
+        touches = np.zeros(len(known))
+    order = touches.argsort(kind="stable")
     parts = known if test.steps else np.floor(np.log(known) / BESIDE)
     _, first = np.unique(parts[order], return_index=True)
     # Of all that are so near that one tells of the others, the first to open.
