@@ -13,7 +13,7 @@ from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
 from relay_contact.qualification.level import MOST, Lengths, Tried, threshold
-from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, Part, Rest, at_rest, parts
+from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, STOP, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response, fast, stays
 from relay_contact.qualification.standards import Contacts
 
@@ -33,7 +33,7 @@ component; step of the search, as a part of the frequency, at most; frequencies 
 
 ABOVE, FALLS = 3.0, 0.7
 """Widths above a resonance at which a slow sweep begins, and the part of its frequency that it goes down to."""
-ORDERS = (2, 3)
+ORDERS = (2, 3, 4, 5)
 """Multiples of a frequency that may resonate where it does not."""
 CROSSING, SLOWEST = 1.0, 10.0
 """Times of settling for which it crosses a width, and all that it takes at most."""
@@ -364,10 +364,11 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> Wea
 def followed(specimen: Specimen, test: Sine, first: float, order: int, least: Weakest, guess: float) -> Weakest:
     """Return where a slow sweep across a resonance fails, by its frequency and order, if below the least level so far.
 
-    A gap, or a force without its least, is not known in steps as long as those of a sweep.
+    A gap, or the force of a stop, is not known in steps as long as those of a sweep.
     """
     level = least.factor * (1 - APART) if least.factor < MOST else guess
-    if specimen.sampled or not swept(specimen, test, first, level, order)[0]:
+    between = specimen.part == STOP or (specimen.part == CONTACT and specimen.is_open)
+    if between or not swept(specimen, test, first, level, order)[0]:
         return least
     level, failed = threshold(swept_tried(specimen, test, first, order), min(guess, level))
     return Weakest(swept(specimen, test, first, level, order)[2], level, failed, order)
