@@ -452,6 +452,14 @@ def test_what_a_search_has_missed_is_found_at_the_level_of_the_test() -> None:
     assert judgement.random_level(own, failing)[0].factor <= 1
 
 
+@pytest.mark.parametrize(("gap", "told"), [(1e-4, True), (1e-3, False)])
+def test_a_fixed_contact_that_follows_the_spring_to_the_open_one_is_told(gap: float, told: bool) -> None:
+    blade = str(ROOT / "scenes/springs/reed-blade.toml")
+    values: Values = {"fixed.file": blade, "effects.secondContact": True, "second.gap": gap, "contact.overtravel": 2e-4}
+    notes = judgement.judged(placed(described(values), SHOCK), SHOCK, FEW).notes
+    assert any("follows the spring" in note for note in notes) == told
+
+
 def test_passes_below_what_was_computed_is_told_so(tmp_path: Path) -> None:
     relay = replace(drawn(7), uncertainty={})
     part = judged(relay, tmp_path, replace(SHOCK, acceleration=0.1))[0].margin

@@ -40,6 +40,8 @@ SHOWN_TIME = 10e-3  # s around a dip
 POINTS = 1500  # of a course that is shown as a whole
 FOLLOWS = 0.9
 """Part of its level by linear theory below which another part than the first fails because that has failed."""
+FOLLOWED = 0.5
+"""Part of the gap of the open contact by which a fixed contact is bent that may follow the spring up to there."""
 RISING, FURTHER = 1.15, 10.0
 """Factor from one level to the next, and of the least margin up to which others are tried once a part has failed."""
 BEYOND = 2.0
@@ -405,7 +407,7 @@ def tested(position: Position, test: Test, points: int) -> Finding:
 
 def judged(position: Position, test: Test, points: int) -> Finding:
     """Run a test in a position of the coil, by one of the models."""
-    notes = list(test.record.notes) if isinstance(test, History) else []
+    notes = [*(test.record.notes if isinstance(test, History) else []), *followed_by(position)]
     evidence = test.weakest_evidence
 
     def finding(verdict: Verdict, limits: str, own: Margin | None = None) -> Finding:
@@ -432,6 +434,19 @@ def judged(position: Position, test: Test, points: int) -> Finding:
             levels[name] = replace(ENDLESS, limits=ENDLESS.limits if each.sure == 1 else each.limits, sure=each.sure)
     own = whole(position, test, levels, seen)
     return finding(verdict(own.low, own.high), levels[first_of(levels)].limits, own)
+
+
+def followed_by(position: Position) -> list[str]:
+    """Return what has to be said of a fixed contact that may follow the spring as far as to the open one."""
+    gap = position.value("second.gap")
+    if not (position.value("effects.secondContact") and position.values.get("fixed.file")):
+        return []
+    with position.component.started(position.values) as contact:
+        bent = -contact.get("fixed.displacement")
+    if bent < FOLLOWED * gap:
+        return []
+    told = f"the fixed contact is bent by {three(1e3 * bent)} mm at rest, and follows the spring as it leaves"
+    return [f"{told}: this may reach the open contact, {three(1e3 * gap)} mm away, below the level that is found"]
 
 
 def decided_at_rest(position: Position) -> tuple[Verdict, str] | None:
