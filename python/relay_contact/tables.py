@@ -259,4 +259,5 @@ def is_number(cell: str) -> bool:
         float(cell.replace(",", "."))
     except ValueError:
         return False
-    return True
+    # Python takes 1_0 for 10.
+    return "_" not in cell
