@@ -267,7 +267,7 @@ def test_a_contact_may_fail_where_a_multiple_of_the_frequency_resonates(armature
             "chatter.resistanceThreshold": CONTACTS.threshold,
         }  # fmt: skip
         count = "chatter.count"
-        return run("at-rest", component=COMPONENT, stop=2.0, step=0.1, outputs=[count], **changes)[count][-1] > 0
+        return bool(run("at-rest", component=COMPONENT, stop=2.0, step=0.1, outputs=[count], **changes)[count][-1] > 0)
 
     assert not fails(0.99 * found.margin.margin)
     assert fails(1.01 * found.margin.margin)
