@@ -4,6 +4,7 @@ use crate::beam::spring;
 use crate::chatter::{Criterion, Interruptions, Summary};
 use crate::conduction;
 use crate::error::{SceneError, StepError};
+use crate::excitation::drive::Drive;
 use crate::inputs::Inputs;
 use crate::integrator::collocation::cache::{Left, OF_LONG, OF_SHORT};
 use crate::integrator::communication_step;
@@ -79,6 +80,7 @@ impl Simulation {
                     at.approach = link.offset(&state.displacements);
                 }
             }
+            motion.drive = Drive::resting(motion.end.displacements);
         }
         motion.current = inputs.contact_current;
         Ok(simulation)

@@ -7,7 +7,7 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::{Event, Simulation};
 use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput, VARIABLES};
 use testing::near;
-use testing::scenes::{self, accelerated, at_rest, force_scale, largest_difference};
+use testing::scenes::{self, accelerated, at_rest, force_scale, largest_difference, supported};
 
 fn shaken(amplitude: f64, tolerance: f64) -> Scene {
     let mut scene = scenes::shaken(amplitude, 1000.0);
@@ -15,15 +15,20 @@ fn shaken(amplitude: f64, tolerance: f64) -> Scene {
     scene
 }
 
-/// Force, indentation and velocity of the tip at every 10 us, with communication steps of `size` us.
-fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64; 3]> {
+/// Force, indentation, velocity and displacement of the tip at every 10 us, with communication steps of `size` us.
+fn motion(scene: &Scene, size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<[f64; 4]> {
     let mut simulation = Simulation::new(scene, &inputs(0.0), 0.0).unwrap();
     let mut rows = Vec::new();
     for k in 0..2000 / size {
         let time = |k: u32| 1e-6 * f64::from(k * size);
         simulation.step(&inputs(time(k)), time(k), 1e-6 * f64::from(size)).unwrap();
         if ((k + 1) * size).is_multiple_of(10) {
-            let outputs = [RealOutput::ContactForce, RealOutput::ContactIndentation, RealOutput::TipVelocity];
+            let outputs = [
+                RealOutput::ContactForce,
+                RealOutput::ContactIndentation,
+                RealOutput::TipVelocity,
+                RealOutput::TipDisplacement,
+            ];
             rows.push(outputs.map(|output| simulation.real(output)));
         }
     }
@@ -40,7 +45,7 @@ fn check(scene: &Scene, inputs: impl Fn(f64) -> Inputs + Copy) {
     // a spring bent wrongly; its velocity changes with the period of the beam's third mode at the fastest.
     let force = scene.solver.tolerance * scenes::force_scale(scene);
     let way = force / scenes::tip_stiffness(scene);
-    let allowed = [force, way, way * 2.0 * std::f64::consts::PI * 9100.0];
+    let allowed = [force, way, way * 2.0 * std::f64::consts::PI * 9100.0, way];
     for size in [1, 2, 5, 10] {
         for (row, (found, exact)) in motion(scene, size, inputs).iter().zip(&exact).enumerate() {
             for ((found, exact), allowed) in found.iter().zip(exact).zip(allowed) {
@@ -50,7 +55,8 @@ fn check(scene: &Scene, inputs: impl Fn(f64) -> Inputs + Copy) {
     }
 }
 
-/// Also with an input that changes: it counts from its communication point on.
+/// Also with an input that changes: it counts from its communication point on; and with inputs along lines that bend at every 300 us,
+/// beyond which the integrator goes.
 #[test]
 fn what_is_read_inside_the_integrators_steps_is_within_the_tolerance() {
     let pulsed = |time: f64| accelerated(if (time / 3e-4).fract() < 0.5 { 40.0 } else { -60.0 }, 0.0);
@@ -60,6 +66,65 @@ fn what_is_read_inside_the_integrators_steps_is_within_the_tolerance() {
         }
     }
     check(&shaken(98.0, 1e-6), pulsed);
+    let bent = |time: f64| {
+        let (line, since) = ((time / 3e-4 + 1e-9).floor(), (time / 3e-4 + 1e-9).fract() * 3e-4);
+        let up = if line % 2.0 == 0.0 { 1.0 } else { -1.0 };
+        let lowest = if up > 0.0 { 0.0 } else { 1.0 };
+        Inputs {
+            base_acceleration: 60.0 * lowest + up * 2e5 * since,
+            base_acceleration_rate: up * 2e5,
+            ..supported(3e-6 * lowest + up * 1e-2 * since, up * 1e-2)
+        }
+    };
+    for amplitude in [98.0, 400.0] {
+        check(&shaken(amplitude, 1e-6), bent);
+    }
+}
+
+/// The steps of a fixed contact that approaches steadily, and makes the spring bounce, are the integrator's own: as many as in one
+/// communication step, though the importer rounds where it is at each point. Then it is held there.
+#[test]
+fn an_input_along_a_line_does_not_break_the_steps() {
+    let mut scene = Scene::default();
+    scene.contact.overtravel = -2e-5;
+    scene.contact.damping = 1e-6;
+    let runs = [1, 250].map(|count| {
+        let size = 5e-3 / f64::from(count);
+        let mut simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+        let mut events = 0;
+        for k in 0..count {
+            let time = f64::from(k) * size;
+            simulation.step(&supported(0.06 * time, 0.06), time, size).unwrap();
+            events += simulation.events().0.count();
+        }
+        let moved = simulation.integer(IntegerOutput::SolverSteps);
+        for k in 0..count {
+            simulation.step(&supported(3e-4, 0.0), 5e-3 + f64::from(k) * size, size).unwrap();
+        }
+        let held = simulation.integer(IntegerOutput::SolverSteps) - moved;
+        (events, moved, held, simulation.real(RealOutput::TipDisplacement))
+    });
+    let [(events, moved, held, place), (of_many, moved_in_many, held_in_many, place_of_many)] = runs;
+    assert_eq!((events, of_many), (3, 3));
+    let more = moved_in_many - moved + held_in_many - held;
+    assert!(more <= 20, "{moved} {moved_in_many}, {held} {held_in_many}");
+    near("displacement", place_of_many, place, 1e-15);
+}
+
+/// An input that changes by so little that its steps are rounding moves the contact all the same.
+#[test]
+fn an_input_that_creeps_by_roundings_is_followed() {
+    let scene = Scene::default();
+    let start = 1e-4_f64;
+    let mut simulation = Simulation::new(&scene, &supported(start, 0.0), 0.0).unwrap();
+    let before = simulation.real(RealOutput::TipDisplacement);
+    let mut at = start;
+    for k in 0..2000 {
+        simulation.step(&supported(at, 0.0), 1e-6 * f64::from(k), 1e-6).unwrap();
+        at = at.next_up();
+    }
+    let moved = simulation.real(RealOutput::TipDisplacement) - before;
+    near("displacement", moved, at - start, 0.05 * (at - start));
 }
 
 #[test]

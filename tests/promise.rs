@@ -210,7 +210,7 @@ fn what_grows_beyond_the_tolerance_is_not_silent() {
         // Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant.
         (kinds::any, &[10_731, 12_630]),
         // What a contact leaves of its errors as it opens, by the next one.
-        (kinds::any, &[910_229, 911_514, 921_359]),
+        (kinds::any, &[910_229, 911_514]),
         (kinds::rough, &[930_625]),
         // In slip that is unstable errors grow with its vibration, far faster than by blows, and in a contact that never opens, too.
         (kinds::friction, &[40_070, 40_317, 40_330, 40_508]),
@@ -261,12 +261,17 @@ fn references_do_not_depend_on_where_communication_steps_end() {
 /// In the others, with friction and no damper, a slip velocity that was rounding over the length of a step let slip end and begin anew.
 #[test]
 fn steps_at_the_tightest_tolerance_do_not_stay_short() {
-    for (draw, numbers) in [(kinds::any as Draw, [10_079, 10_454]), (kinds::friction, [922_017, 922_907])] {
-        for number in numbers {
+    for (draw, numbers) in
+        [(kinds::any as Draw, &[10_079, 10_454, 991_074][..]), (kinds::friction, &[922_017, 922_907])]
+    {
+        for &number in numbers {
             let (_, failure) = draw(number).run(|scene| tighten(scene, 0.0, 0.0)).unwrap();
             assert_eq!(failure, None, "{number}");
         }
     }
+    // Nor at a looser one where a length of the grid above would do, and the estimate is rounding: millions of steps otherwise.
+    let (course, failure) = kinds::any(970_786).run(|_| {}).unwrap();
+    assert!(failure.is_none() && course.steps < 200_000, "{failure:?}, {} steps", course.steps);
 }
 
 /// Twin contacts without damping part at the same instant, but for rounding, which once opened and closed them a thousand times.

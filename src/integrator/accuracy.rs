@@ -51,13 +51,11 @@ impl<const S: usize> Whole<'_, S> {
 
     /// The same of a short step, N, where a force turns; not of one that hardly changes, as the fastest vibrations need not be resolved.
     pub(crate) fn inaccuracy_of_turns(&self) -> f64 {
-        let Self { model, state, drive, collocation, trial, length, .. } = *self;
+        let Self { model, state, collocation, trial, .. } = *self;
         let links = model.links.iter().zip(&state.links).zip(&trial.links);
         let closed = links.filter(|((_, at), _)| at.closed);
         let swings = closed.map(|((link, at), nodes)| swing(at.force - link.force, &collocation.places, &nodes.forces));
-        let bent = drive.has_just_changed(state.time, length);
-        let missed = if bent { FADED * trial.start_defect } else { BETWEEN_NODES * trial.next_terms };
-        let error = trial.inner_error.lasting.max(missed);
+        let error = trial.inner_error.lasting.max(BETWEEN_NODES * trial.next_terms);
         error.min(swings.fold(0.0, f64::max))
     }
 
@@ -120,10 +118,6 @@ impl<const S: usize> Whole<'_, S> {
 /// term misses at the start, 1: greatest value of `x prod (1 - x / c_k)`.
 const BETWEEN_NODES: f64 = 0.155;
 
-/// The same beyond the first node after a bend, 1: what has faded up to there has terms that do not decay. Greatest value of
-/// `prod (1 - x / c_k)` there.
-const FADED: f64 = 0.386;
-
 /// How far a force that rises and falls from `start` (N) over the nodes of a step is from where it turns, N; 0 of one that does not.
 fn swing<const S: usize>(start: f64, places: &Nodal<S>, forces: &Nodal<S>) -> f64 {
     let end = end(forces);
@@ -152,17 +146,11 @@ mod tests {
     use crate::integrator::collocation::polynomial::SHORT_BY_TIME;
 
     #[test]
-    fn the_shapes_between_the_nodes_of_short_steps_have_their_greatest_values() {
+    fn the_shape_between_the_nodes_of_short_steps_has_its_greatest_value() {
         let nodes = SHORT_BY_TIME.nodes;
-        let faded = |x: f64| nodes.iter().map(|node| 1.0 - x / node).product::<f64>();
-        let most = |shape: &dyn Fn(f64) -> f64, from: f64| {
-            let places = (0..1000).map(|k| 1e-3 * f64::from(k)).filter(|x| *x > from);
-            places.map(|x| shape(x).abs()).fold(0.0, f64::max)
-        };
-        let between = most(&|x| x * faded(x), 0.0);
-        assert!((between / BETWEEN_NODES - 1.0).abs() < 0.01, "{between}");
-        let beyond_first = most(&faded, nodes[0]);
-        assert!((beyond_first / FADED - 1.0).abs() < 0.01, "{beyond_first}");
+        let shape = |x: f64| x * nodes.iter().map(|node| 1.0 - x / node).product::<f64>();
+        let most = (0..1000).map(|k| shape(1e-3 * f64::from(k)).abs()).fold(0.0, f64::max);
+        assert!((most / BETWEEN_NODES - 1.0).abs() < 0.01, "{most}");
     }
 
     /// Between its last two nodes this one lies lower than at any of them.

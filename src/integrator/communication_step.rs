@@ -105,8 +105,10 @@ pub fn step(
     workspace.search.work = 0;
     // The fixed contacts move at constant velocity to their positions at the end of the step.
     let displacements = displaced(model, inputs, time, size)?;
-    let drive = Drive::new(inputs, time, size, motion.ways(displacements));
-    let steady = drive.continues(&motion.drive);
+    let rates = felt(model, Inputs::MOVING.map(|input| inputs.rate(input)));
+    let next = motion.drive.next(inputs, (time, size), (motion.displacements(), displacements), rates);
+    // An exact step ahead has constant inputs.
+    let steady = next.is_none() && (model.closed_loop.is_none() || motion.drive.is_constant());
     let mut extremes = model.scene.effects.extremes.then(|| motion.extremes_now(model));
     if steady && until < motion.end.time {
         // The end lies inside the current integration step: nothing to integrate, outputs come from its dense output.
@@ -120,6 +122,7 @@ pub fn step(
             workspace.events.forget_after(motion.end.time);
         })?;
     } else {
+        let drive = next.unwrap_or(motion.drive);
         // It is all that changes until the step is done.
         let (modes, links) = (model.modes.len(), model.links.len());
         workspace.former.end.copy(&motion.end, modes, links);
@@ -183,14 +186,18 @@ fn go_back(model: &Model, motion: &mut Motion, workspace: &mut Workspace) -> Res
 fn displaced(model: &Model, inputs: &Inputs, time: f64, size: f64) -> Result<Ways, StepError> {
     let [support, second, pusher] = inputs.displacements_after(size);
     let initial = model.initial.displacements;
-    let present = |link: Option<usize>, displacement: f64| link.map_or(0.0, |_| displacement);
-    let prescribed = model.roles.pusher.filter(|_| model.roles.core.is_none());
-    let second = present(model.roles.second, second);
+    let displacements = felt(model, [support - initial[0], second, pusher - initial[2]]);
+    let [_, second, _] = displacements;
     let room = model.room(second);
     let (displacement, limit) = (second, second + room);
     let cause = StepErrorCause::NoRoom { displacement, limit };
-    let displacements = [support - initial[0], second, present(prescribed, pusher - initial[2])];
     (room > 0.0).then_some(displacements).ok_or(StepError { time, cause })
+}
+
+/// What the model feels of ways (m), or velocities (m/s), of the inputs that move bodies.
+fn felt(model: &Model, [support, second, pusher]: Ways) -> Ways {
+    let prescribed = model.roles.pusher.is_some() && model.roles.core.is_none();
+    [support, if model.roles.second.is_some() { second } else { 0.0 }, if prescribed { pusher } else { 0.0 }]
 }
 
 /// The state at the communication point, by a step from the start of the integration step around it.

@@ -113,7 +113,7 @@ impl Motion {
             current_rate: 0.0,
             size: 0.0,
             extremes: None,
-            drive: Drive::default(),
+            drive: Drive::resting(state.displacements),
             start: state,
             end: state,
             dense: DenseOutput::default(),
@@ -155,7 +155,8 @@ impl Motion {
         let Self { time, current, current_rate, size, extremes, drive, start, end, dense } = self;
         let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.acceleration(start.time)];
         let extremes = extremes.iter().flat_map(Extremes::numbers);
-        numbers.into_iter().chain(drive.velocities).chain(extremes).all(f64::is_finite)
+        let moving = drive.velocities.into_iter().chain(drive.displacements);
+        numbers.into_iter().chain(moving).chain(extremes).all(f64::is_finite)
             && *size >= 0.0
             && dense.is_sound()
             && start.is_sound()
@@ -351,18 +352,20 @@ impl Motion {
         Extremes::at(model, forces, second.unwrap_or_default())
     }
 
-    /// Ways (m) of the inputs to these displacements (m). None where nothing moves, also by rounding.
-    pub(crate) fn ways(&self, mut displacements: Ways) -> Ways {
-        for (displacement, before) in displacements.iter_mut().zip(&self.state().displacements) {
-            *displacement -= before;
+    /// Displacements of the inputs that move bodies, m.
+    pub(crate) fn displacements(&self) -> Ways {
+        let at = self.state();
+        let mut displacements = at.displacements;
+        for (displacement, velocity) in displacements.iter_mut().zip(&self.drive.velocities) {
+            *displacement += velocity * (self.time - at.time);
         }
         displacements
     }
 
     /// Displacement (m) and velocity (m/s) of the fixed contact.
     pub fn support(&self) -> (f64, f64) {
-        let State { displacements: [displacement, ..], velocities: [velocity, ..], .. } = self.state();
-        (*displacement, *velocity)
+        let ([displacement, ..], [velocity, ..]) = (self.displacements(), self.state().velocities);
+        (displacement, velocity)
     }
 
     /// Extremes of the forces within the last communication step; for scenes with `effects.extremes`.

@@ -7,7 +7,9 @@ use crate::integrator::collocation::part::Whole;
 use crate::integrator::collocation::step::compute;
 use crate::integrator::collocation::trial::{Source, Trial};
 use crate::integrator::commit::commit;
-use crate::integrator::constants::{DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MOTION_ROUNDING, ROUNDED, SAFETY};
+use crate::integrator::constants::{
+    DRIVEN, FREE_ROUNDING, INHERITED, ITERATIONS, MANY_STEPS, MOTION_ROUNDING, ROUNDED, SAFETY,
+};
 use crate::integrator::energy::{balance, conservation};
 use crate::integrator::events::interruption::Passages;
 use crate::integrator::events::{Event, Locator};
@@ -114,14 +116,14 @@ impl<'a> Stepper<'a> {
         // Inside steps with few nodes extremes lie after a change of the inputs, or a jump of the generated acceleration, or where the
         // force turns; else they may be inaccurate there, unless they are read.
         let jumps = self.state.lengths.last == 0.0 && !self.state.touches_now();
-        let inside =
-            if read || (self.progress.driven || jumps) && watched && closed || (watched || !closed) && S != SHORT {
-                whole.inaccuracy(allowed)
-            } else if watched {
-                whole.inaccuracy_of_turns() / allowed
-            } else {
-                0.0
-            };
+        let changed = self.progress.driven || self.drive.has_just_changed(self.state.time, target.length);
+        let inside = if read || (changed || jumps) && watched && closed || (watched || !closed) && S != SHORT {
+            whole.inaccuracy(allowed)
+        } else if watched {
+            whole.inaccuracy_of_turns() / allowed
+        } else {
+            0.0
+        };
         let law_residual = if watched && closed { whole.law_residual(allowed) / allowed } else { 0.0 };
         // It only rejects.
         let inside = if law_residual > 1.0 { inside.max(law_residual) } else { inside };
@@ -137,7 +139,8 @@ impl<'a> Stepper<'a> {
         let fails = ratio > 1.0 && (closed || inside < 1.0);
         // What does not shrink with the step would keep one that is far too short from growing to the next length of the grid.
         let next = error_of_growth::<S>(self.grid.spacing() / SAFETY);
-        let stays = of_inside && ratio <= 1.0 && ratio > next;
+        let looks = of_inside || closed && self.state.steps.is_multiple_of(MANY_STEPS.into());
+        let stays = looks && ratio <= 1.0 && ratio > next;
         if (fails || stays) && error <= of_rounding::<S>(model, self.state, trial, rounding) {
             [if fails { ROUNDED } else { next }; 2]
         } else {

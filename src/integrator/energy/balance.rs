@@ -148,6 +148,7 @@ mod tests {
     use crate::integrator::grid::Grid;
     use crate::integrator::recorder::Recorder;
     use crate::integrator::stepper::Stepper;
+    use crate::link::INPUTS;
     use crate::math::nodal::SHORT;
     use crate::scene::Scene;
     use crate::variables::ExcitationKind;
@@ -166,7 +167,8 @@ mod tests {
         let model = Model::new(&scene, 0.0).unwrap();
         let mut state = model.initial_state(0.0);
         let inputs = Inputs { base_acceleration: 20.0, base_acceleration_rate: 1e5, ..Inputs::default() };
-        let drive = Drive::new(&inputs, 0.0, 1e-3, [-2e-8, 0.0, 0.0]);
+        let ways = ([0.0; INPUTS], [-2e-8, 0.0, 0.0]);
+        let drive = Drive::default().next(&inputs, (0.0, 1e-3), ways, [0.0; INPUTS]).unwrap();
         let mut workspace = Workspace::new(&model);
         advance(&model, &mut state, &mut workspace, drive, Grid::over(0.0, 4e-4), false, None).unwrap();
         state.energy_balance = 0.0;
