@@ -83,6 +83,15 @@ impl Drive {
         self.new && time - self.since < 0.5 * length
     }
 
+    /// Where it takes inputs from these displacements (m) in `length` seconds: not by the rounded time, which a stiff contact would feel.
+    #[inline(always)]
+    pub fn moved(&self, mut displacements: Ways, length: f64) -> Ways {
+        for (displacement, velocity) in displacements.iter_mut().zip(&self.velocities) {
+            *displacement += velocity * length;
+        }
+        displacements
+    }
+
     /// Whether the base acceleration is constant and the fixed contacts at rest.
     pub fn is_constant(&self) -> bool {
         self.jerk == 0.0 && self.velocities.iter().all(|velocity| *velocity == 0.0)

@@ -30,10 +30,7 @@ pub(crate) fn commit<const S: usize>(
         *mode = *end;
     }
     state.time = target.time;
-    // As in the step: not by the rounded time, which a stiff contact would feel.
-    for (displacement, velocity) in state.displacements.iter_mut().zip(&drive.velocities) {
-        *displacement += velocity * target.length;
-    }
+    state.displacements = drive.moved(state.displacements, target.length);
     for ((link, at), nodes) in model.links.iter().zip(&mut state.links).zip(&trial.links) {
         (at.approach, at.rate) = (nodes.end.approach, nodes.end.rate);
         match &link.law {

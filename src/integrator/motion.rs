@@ -355,11 +355,7 @@ impl Motion {
     /// Displacements of the inputs that move bodies, m.
     pub(crate) fn displacements(&self) -> Ways {
         let at = self.state();
-        let mut displacements = at.displacements;
-        for (displacement, velocity) in displacements.iter_mut().zip(&self.drive.velocities) {
-            *displacement += velocity * (self.time - at.time);
-        }
-        displacements
+        self.drive.moved(at.displacements, self.time - at.time)
     }
 
     /// Displacement (m) and velocity (m/s) of the fixed contact.

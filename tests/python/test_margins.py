@@ -213,6 +213,17 @@ def test_how_far_an_open_contact_is_from_a_make_is_known_during_a_pulse_and_afte
         assert piece.tried(specimen, sign)(0.98 * level)[1] == pytest.approx(0.02, abs=2e-3)
 
 
+def swept(values: Values, level: float, band: tuple[float, float], lasting: float, output: str) -> Array:
+    """Return an output every 0.1 s of a sweep (Hz) of so many g and seconds, by the component alone."""
+    changes: dict[str, Any] = {
+        **values, "effects.excitation": "LogSweep", "excitation.amplitude": level * GRAVITY,
+        "excitation.frequency": band[0], "excitation.endFrequency": band[1], "excitation.duration": lasting,
+        "chatter.resistanceThreshold": CONTACTS.threshold,
+    }  # fmt: skip
+    course: Array = run("at-rest", component=COMPONENT, stop=lasting, step=0.1, outputs=[output], **changes)[output]
+    return course
+
+
 @pytest.mark.parametrize("how", [{"sweep_time": 1200.0}, {"dwell": True}])
 def test_a_sweep_follows_a_resonance_down(how: dict[str, Any]) -> None:
     """The resonance of a rough contact falls from 520 to 429 Hz: raised vibrations open it at eight times the level."""
@@ -226,13 +237,7 @@ def test_a_sweep_follows_a_resonance_down(how: dict[str, Any]) -> None:
     found = judgement.judged(placed(described(values), test), test, FEW)
 
     def fails(level: float) -> bool:
-        changes: dict[str, Any] = {
-            **values, "effects.excitation": "LogSweep", "excitation.amplitude": level * 0.2 * GRAVITY,
-            "excitation.frequency": 600.0, "excitation.endFrequency": 400.0, "excitation.duration": 20.0,
-            "chatter.resistanceThreshold": CONTACTS.threshold,
-        }  # fmt: skip
-        total = "chatter.totalInterruption"
-        course = run("at-rest", component=COMPONENT, stop=20.0, step=0.1, outputs=[total], **changes)[total]
+        course = swept(values, level * 0.2, (600.0, 400.0), 20.0, "chatter.totalInterruption")
         # After the sudden start.
         return bool(course[-1] > course[10])
 
@@ -261,13 +266,7 @@ def test_a_contact_may_fail_where_a_multiple_of_the_frequency_resonates(armature
     found = judgement.judged(placed(described(values), test), test, FEW)
 
     def fails(level: float) -> bool:
-        changes: dict[str, Any] = {
-            **values, "effects.excitation": "LogSweep", "excitation.amplitude": level * 20.0 * GRAVITY,
-            "excitation.frequency": 1400.0, "excitation.endFrequency": 1100.0, "excitation.duration": 2.0,
-            "chatter.resistanceThreshold": CONTACTS.threshold,
-        }  # fmt: skip
-        count = "chatter.count"
-        return bool(run("at-rest", component=COMPONENT, stop=2.0, step=0.1, outputs=[count], **changes)[count][-1] > 0)
+        return bool(swept(values, level * 20.0, (1400.0, 1100.0), 2.0, "chatter.count")[-1] > 0)
 
     assert not fails(0.99 * found.margin.margin)
     assert fails(1.01 * found.margin.margin)

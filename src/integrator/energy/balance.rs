@@ -94,9 +94,7 @@ where
         cache.collocation = first;
         computed?;
         at.time += half;
-        for (displacement, velocity) in at.displacements.iter_mut().zip(&drive.velocities) {
-            *displacement += velocity * half;
-        }
+        at.displacements = drive.moved(at.displacements, half);
     }
     // Of a closed contact the work; without contact force, all elastic energy that leaves the contact is dissipated.
     let stored = |index: usize| {
