@@ -87,16 +87,22 @@ impl ForceError {
             closed |= index == CONTACT;
             drawn |= tangent.stiffness < 0.0;
             let links = self.forces.get_mut(index).zip(before.get(index));
-            let Some(((force, before), shape)) = links.zip(slowest.shapes.get(port)) else { continue };
+            let places = slowest.shapes.get(port).zip(slowest.compliance.get(port));
+            let Some(((force, before), (shape, compliance))) = links.zip(places) else { continue };
             let (y, rate) = (dot::<MODES, A>(shape, &next_q), dot::<MODES, A>(shape, &next_v));
+            // Faster modes yield at once, in series with the law. A magnet draws more the further it has moved.
+            let yielding = 1.0 + tangent.stiffness.max(0.0) * compliance;
+            let (stiffness, damping) = (tangent.stiffness / yielding, tangent.damping / yielding);
             // The force at the end is that of the law at the motion that the mean force causes.
-            let Tangent { stiffness, damping, gain } = tangent;
-            // A magnet draws more the further it has moved; bounded, as the rule fails at -2.
-            let gain = if stiffness < 0.0 { -gain.min(1.0) } else { gain };
+            let (mut of_q, mut of_v) = ([0.0; MODES], [0.0; MODES]);
+            add_products::<MODES, A>(&mut of_q, shape, &by_force);
+            add_products::<MODES, A>(&mut of_v, shape, &free.q_from_v);
+            // Bounded, as the rule fails at -2.
+            let gain = (stiffness * dot::<MODES, A>(shape, &of_q) + damping * dot::<MODES, A>(shape, &of_v)).max(-1.0);
             *force = -(stiffness * y + damping * rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
-            let pushed = scaled(shape, 0.5 * (before + *force));
-            add_products::<MODES, A>(&mut next_q, &pushed, &by_force);
-            add_products::<MODES, A>(&mut next_v, &pushed, &free.q_from_v);
+            let mean = [0.5 * (before + *force); MODES];
+            add_products::<MODES, A>(&mut next_q, &mean, &of_q);
+            add_products::<MODES, A>(&mut next_v, &mean, &of_v);
         }
         self.deviation = Deviation { q: next_q, v: next_v };
         let size = self.normalise(slowest);

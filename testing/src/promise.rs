@@ -37,7 +37,10 @@ pub fn tighten(scene: &mut Scene, part: f64, stronger: f64) {
     scene.solver.modes = i32::try_from(MAX_MODES).unwrap_or(i32::MAX);
     scene.excitation.amplitude *= 1.0 + stronger;
     scene.excitation.spectral_density *= (1.0 + stronger).powi(2);
-    scene.contact.curvature_radius *= 1.0 + stronger;
+    let (first, second, parallel) = (&mut scene.contact, &mut scene.second, &mut scene.parallel);
+    for radius in [&mut first.curvature_radius, &mut second.curvature_radius, &mut parallel.curvature_radius] {
+        *radius *= 1.0 + stronger;
+    }
 }
 
 fn reference(relay: &Relay, part: f64, stronger: f64) -> Option<Course> {

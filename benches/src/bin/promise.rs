@@ -18,7 +18,7 @@ struct Arguments {
     #[arg(long, default_value = "out/accuracy")]
     folder: PathBuf,
     /// Number of the first relay
-    #[arg(long, default_value_t = 2_000_000)]
+    #[arg(long, default_value_t = 3_000_000)]
     first: u64,
     /// Number of relays
     #[arg(long, default_value_t = 2_000)]
