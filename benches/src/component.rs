@@ -40,7 +40,8 @@ impl Integrator for Component {
         forces.push(contact.reals_of(read)[0]);
         for cell in 0..problem.cells {
             if problem.support_rate != 0.0 {
-                check(contact.set_reals_of(support, [problem.support_rate * problem.instant(cell + 1)]))?;
+                check(contact.set_reals_of(support, [problem.support_rate * problem.instant(cell)]))?;
+                check(contact.set_rates_of(support, [1], [problem.support_rate]))?;
             }
             check(contact.step(problem.instant(cell), size))?;
             let [force, opening, closing] = contact.reals_of(read);

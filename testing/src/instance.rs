@@ -190,12 +190,12 @@ impl Instance {
         }
     }
 
-    /// `fmi2SetRealInputDerivatives`, of these orders.
     pub fn set_rates<const N: usize>(&self, names: [&str; N], orders: [i32; N], rates: [f64; N]) -> fmi2Status {
         self.set_rates_of(names.map(vr), orders, rates)
     }
 
-    fn set_rates_of<const N: usize>(&self, references: [u32; N], orders: [i32; N], rates: [f64; N]) -> fmi2Status {
+    /// `fmi2SetRealInputDerivatives`, of these orders.
+    pub fn set_rates_of<const N: usize>(&self, references: [u32; N], orders: [i32; N], rates: [f64; N]) -> fmi2Status {
         let (references, orders) = (references.as_ptr(), orders.as_ptr());
         unsafe { fmi2SetRealInputDerivatives(self.component, references, N, orders, rates.as_ptr()) }
     }
