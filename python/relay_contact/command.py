@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from relay_contact.component import Component, Value, units
-from relay_contact.files import RelayContactError, fmu_path, page_path, read_toml, scenes
+from relay_contact.files import RelayContactError, fmu_path, page_path, read_toml, scenes, spare
 from relay_contact.scene import Scene, run, write_table
 from relay_contact.spring import SPRING_FILES
 
@@ -112,6 +112,9 @@ def run_scene(given: argparse.Namespace) -> None:
     titled = f"{scene.title}{'; changed: ' if words else ''}{', '.join(words)}"
     names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))
     told = list(dict.fromkeys([*names, *TOLD]))
+    table = given.out / f"{','.join([Path(given.scene).stem, *words])}.csv"
+    spare([table], [scene.file] if scene.file else [])
+    given.out.mkdir(parents=True, exist_ok=True)
     result = run(scene, outputs=told, stop=given.stop, step=given.step, component=component, progress=True)
     print(titled, "Ranges at communication points; step.* have the extremes between them:", sep="\n")
     width = max(map(len, result.columns))
@@ -120,8 +123,6 @@ def run_scene(given: argparse.Namespace) -> None:
         print(f"  {name:{width}}  {values.min():.6g} to {values.max():.6g} {result.units[name]}".rstrip())
     for name in TOLD:
         print(f"  {name:{width}}  {result[name][-1]:.9g} {result.units[name]}".rstrip() + " at the end")
-    given.out.mkdir(parents=True, exist_ok=True)
-    table = given.out / f"{','.join([Path(given.scene).stem, *words])}.csv"
     columns = ["time", *names]
     write_table(table, ",".join(columns), np.column_stack([result[name] for name in columns]))
     print(table, draw(table, titled, sweep_of(scene.values)), sep="\n")

@@ -14,7 +14,7 @@ import numpy as np
 from relay_contact import tables
 from relay_contact.component import Array
 from relay_contact.figures import BLUE, RED, three
-from relay_contact.files import RelayContactError
+from relay_contact.files import RelayContactError, spare
 from relay_contact.scene import read_table
 from relay_contact.tables import TIMES, Units
 
@@ -141,6 +141,8 @@ def compare(
     `threshold` is the resistance (Ohm) above which a contact is interrupted, `shift` the time (s) to add to that
     measured; without it both begin at their first interruption.
     """
+    paths = [out / name for name in FILES] if out else []
+    spare(paths, (run, log))
     own, other = simulated(run, threshold), measured(log, threshold)
     notes = []
     shortest = min((*own.duration, *other.duration), default=0.0)
@@ -163,7 +165,6 @@ def compare(
         if beyond := int(np.sum(outside)):
             text = f"{beyond} are outside the time of the {record}, and counted all the same"
             notes.append(f"Of the {name} interruptions {text}.")
-    paths = [out / name for name in FILES] if out else []
     found = Comparison(own, other, notes, paths)
     if out:
         out.mkdir(parents=True, exist_ok=True)

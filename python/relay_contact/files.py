@@ -4,6 +4,7 @@ import hashlib
 import os
 import re
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from threading import get_ident
 from typing import Any
@@ -71,8 +72,20 @@ def digest(data: bytes) -> str:
 def write_at_once(path: Path, text: str) -> None:
     """Write a file that is there as a whole or not at all, as others may look for it or write it now."""
     part = path.with_name(f"{path.name}.{os.getpid()}.{get_ident()}.part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(path)
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def spare(written: Iterable[Path], read: Iterable[Path]) -> None:
+    """Refuse to write over a file that was read."""
+    own = {path.resolve() for path in read}
+    for path in written:
+        if path.resolve() in own:
+            raise RelayContactError(f"{path}: is read: not allowed, allowed is another folder for what is written")
 
 
 def shown(value: object) -> str:

@@ -90,6 +90,8 @@ class Scene:
     """Parameters and constant inputs."""
     table: dict[str, Array]
     """Inputs that change, over the column `time`; empty where all are constant."""
+    file: Path | None = None
+    """Where these were read."""
 
     @classmethod
     def read(cls, scene: str | Path, component: Component | None = None) -> Self:
@@ -103,10 +105,11 @@ class Scene:
         file = inputs.pop("file", "")
         if not isinstance(file, str):
             raise refused(path, ("inputs", "file"), file, "allowed is the path of a table beside this file")
+        source = path.parent / file if file else None
         table = {}
-        if file:
+        if source:
             with at(path, "inputs", "file"):
-                table = input_table(path.parent / file)
+                table = input_table(source)
         for name, keys, value in leaves(inputs):
             if name in table:
                 raise refused(path, ("inputs", *keys), value, f"{file} has a column for it")
@@ -116,7 +119,7 @@ class Scene:
             with at(path, "outputs", number):
                 if component:
                     component.name(name)
-        return cls(content.title, content.stop, content.communication_step, content.outputs, values, table)
+        return cls(content.title, content.stop, content.communication_step, content.outputs, values, table, source)
 
     def points(self) -> Array:
         """Return the communication points; the last is the stop."""

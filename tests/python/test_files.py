@@ -455,6 +455,45 @@ def test_threads_write_one_file_at_once(tmp_path: Path, monkeypatch: pytest.Monk
     assert [each.read_text() for each in tmp_path.iterdir()] == ["found"]
 
 
+def test_a_disk_that_is_full_leaves_nothing_and_names_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, *_: object, **__: object) -> None:
+        path.touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(OSError, match=r"No space left on device: .*page.html"):
+        write_at_once(tmp_path / "page.html", "all of it")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_was_read_is_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A scene beside a table of its name; a relay's file in the folder that is written; a log as the comparison."""
+    scene, course = tmp_path / "road.toml", tmp_path / "road.csv"
+    scene.write_text(SCENE + "[inputs]\nfile = 'road.csv'\n")
+    course.write_text("time [s],base.acceleration [g]\n0,1\n1,2\n")
+    relay, log = tmp_path / "relay.toml", tmp_path / "comparison.csv"
+    relay.write_text("")
+    log.write_text("start,duration\n")
+    before = [path.read_text() for path in sorted(tmp_path.iterdir())]
+    for command, read in (
+        (["run", str(scene)], course),
+        (["identify", str(relay), "--data", str(course)], relay),
+        (["compare", str(course), str(log)], log),
+    ):
+        assert main([*command, "--out", str(tmp_path)]) == 1
+        assert f"{read}: is read: not allowed, allowed is another folder" in capsys.readouterr().err
+    assert [path.read_text() for path in sorted(tmp_path.iterdir())] == before
+
+
+def test_a_run_that_is_interrupted_says_so(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("relay_contact.command.list_all", interrupted)
+    assert main(["list"]) == 130
+    assert capsys.readouterr().err == "\nrelay-contact: interrupted\n"
+
+
 def test_a_choice_in_a_file_has_its_name_if_it_is_given_by_its_number(tmp_path: Path) -> None:
     path = tmp_path / "relay.toml"
     number = COMPONENT.choices("effects.contactLaw")["Rough"]
@@ -509,6 +548,9 @@ def test_an_instance_of_wrong_values_does_not_begin(tmp_path: Path, spring: str,
             "relay-contact: --set tip_mass=1e-5: tip.mass is given twice",
         ),
         (["--set", "beam.lenght=1"], "relay-contact: beam.lenght: no such variable; did you mean beam.length?\n"),
+        (["--set", "beam.file=none.toml"], f"relay-contact: {Path('none.toml').resolve()}: cannot be read"),
+        (["--output", "beam.file"], "relay-contact: beam.file: a text, which is no output"),
+        (["--out", "/dev/null/x"], "relay-contact: /dev/null/x: Not a directory"),
         (["--set", "beam.length=nan"], "relay-contact: beam.length = nan: not allowed, allowed is a finite number"),
     ],
 )

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from relay_contact.component import Component
-from relay_contact.files import RelayContactError, named
+from relay_contact.files import RelayContactError, named, spare
 from relay_contact.identification.measurement import read
 from relay_contact.identification.prediction import Laboratory
-from relay_contact.identification.report import write
+from relay_contact.identification.report import FILES, write
 from relay_contact.identification.result import Found, Identification, conclude, sought, unknowns, usual
 from relay_contact.qualification.relay import Relay, relays
 from relay_contact.scene import progress_bar
@@ -43,6 +43,10 @@ def identify(
             told = f"the same data as {known[content]}: not allowed, allowed is each measurement once"
             raise RelayContactError(f"{each}: {told}")
         known[content] = each
+    if out:
+        springs = [Path(str(values["beam.file"])) for values in described.positions.values() if "beam.file" in values]
+        made = (f"{path.stem}.toml", *(each.name for each in springs), *FILES)
+        spare((Path(out) / name for name in made), (path, *springs, *paths))
     measurements = [read(each, component, list(described.positions)) for each in paths]
     if not measurements:
         raise RelayContactError("no data: one file or more is needed")

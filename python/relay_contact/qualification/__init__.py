@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from relay_contact.component import Component
-from relay_contact.files import RelayContactError
+from relay_contact.files import RelayContactError, spare
 from relay_contact.qualification.assessment import FEW, assess, chosen
 from relay_contact.qualification.relay import Relay, check_monitor, relays
 from relay_contact.qualification.results import Assessment, Finding, Tested
@@ -45,12 +45,13 @@ def qualify(
     writes it as PDF, too.
     """
     # Workers and lists of relays import this package, too, and draw nothing.
-    from relay_contact.qualification.page import write
+    from relay_contact.qualification.page import FILES, write
 
     tests = [tests] if isinstance(tests, str) else tests
     if tests and not standard:
         raise RelayContactError(f"tests {', '.join(tests)}: not allowed without a standard, whose tests they are")
     component, out = component or Component(), Path(out)
+    spare((out / name for name in FILES), map(Path, history or []))
     described = Relay.read(relay, component)
     asked = Standard.read(standard or LIMITS)
     asked = chosen(asked, tests or []) if standard else replace(asked, title="measured records", tests=())
