@@ -332,6 +332,9 @@ def main(arguments: list[str] | None = None) -> int:
         # Whoever read what was printed has enough.
         sys.stdout = None
         return 0
+    except KeyboardInterrupt:
+        print("\nrelay-contact: interrupted", file=sys.stderr)
+        return 130
     except (RelayContactError, OSError) as error:
         told = f"{error.filename}: {error.strerror}" if isinstance(error, OSError) and error.filename else error
         print(f"relay-contact: {told}", file=sys.stderr)

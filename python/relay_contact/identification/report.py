@@ -12,6 +12,7 @@ from matplotlib.ticker import NullFormatter
 from relay_contact import pages
 from relay_contact.component import SIGNS, Array, Component, Unit, units
 from relay_contact.figures import BLACK, BLUE, GREY, RED
+from relay_contact.files import write_at_once
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
 from relay_contact.identification.measurement import BOUNCE, COLUMNS, FORCE, FREQUENCY, RELATIVE, RINGDOWN
@@ -143,7 +144,7 @@ def write(folder: Path, result: Identification, component: Component) -> None:
             data=(("measurement", "file", "position", "contact", "values", "scatter (rms)"), data(result)),
             correlations=matrix(result) if len(result.found) > 1 else None,
         )  # fmt: skip
-    (folder / FILES[0]).write_text(page, encoding="utf-8")
+    write_at_once(folder / FILES[0], page)
     with (folder / FILES[2]).open("w", newline="", encoding="utf-8") as file:
         lines_ = csv.writer(file, lineterminator="\n")
         lines_.writerow(["parameter", "in the file (SI)", "identified (SI)", "low", "high"])

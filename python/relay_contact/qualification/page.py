@@ -9,7 +9,7 @@ import matplotlib as mpl
 from relay_contact import pages
 from relay_contact.component import DIFFERENCE, Component, Values, units
 from relay_contact.figures import three
-from relay_contact.files import digest
+from relay_contact.files import digest, write_at_once
 from relay_contact.qualification import plots, statistics
 from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
@@ -275,7 +275,7 @@ def write(assessment: Assessment, component: Component, date: str = "", pdf: boo
     folder = assessment.folder
     with mpl.rc_context(pages.STYLE):
         page = html(assessment, component, date)
-    (folder / FILES[0]).write_text(page, encoding="utf-8")
+    write_at_once(folder / FILES[0], page)
     assessment.write()
     if pdf:
         pages.write_pdf(page, folder / PDF)
