@@ -35,7 +35,7 @@ def threshold(
         low, high, failed = (low, level, found) if found else (level, high, failed)
         if high <= (1 + resolution) * low or high < 1e-3 * guess:
             return high, list(failed)
-        if high == np.inf and low > FAR * guess:
+        if high == np.inf and low > min(FAR * guess, MOST):
             return max(low, MOST), []
         if ahead:
             near = sorted([*near, (ahead * level, level)], key=lambda each: abs(each[0]))[:2]
