@@ -556,6 +556,9 @@ def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.C
         qualify("paper", "MIL-STD-202", tests="none", out=tmp_path, component=COMPONENT)
     assert main(["qualify", "paper", "--history", "record.csv", "--test", "204"]) == 1
     assert "tests 204: not allowed without a standard" in capsys.readouterr().err
+    for option in (["--unit", "g"], ["--rate", "1000"]):
+        assert main(["qualify", "paper", "--standard", "MIL-STD-202", *option, *wanted[-2:]]) == 1
+        assert "unit, rate: not allowed without a record" in capsys.readouterr().err
 
 
 def test_a_slope_begins_at_a_density_with_or_without_a_decimal_point(tmp_path: Path) -> None:

@@ -50,6 +50,8 @@ def qualify(
     tests = [tests] if isinstance(tests, str) else tests
     if tests and not standard:
         raise RelayContactError(f"tests {', '.join(tests)}: not allowed without a standard, whose tests they are")
+    if (unit or rate) and not history:
+        raise RelayContactError("unit, rate: not allowed without a record, whose they are")
     component, out = component or Component(), Path(out)
     spare((out / name for name in FILES), map(Path, history or []))
     described = Relay.read(relay, component)
