@@ -32,7 +32,7 @@ SPELLINGS = {"\N{MICRO SIGN}": "u", "\N{GREEK SMALL LETTER MU}": "u", "\N{SUPERS
 OTHERS = {"sec": "s", "msec": "ms", "usec": "us", "hz": "Hz", "khz": "kHz", "G": "g"}
 """Units as some programs write them."""
 CELL = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^\])]*)[\])]|\bin\s+(?P<word>\S+)|\s/\s*(?P<slash>\S+))?")
-"""A name, with a unit as in `travel [mm]`, `travel (mm)`, `travel in mm` or `travel / mm`."""
+"""A name, with a unit as in `travel [mm]`, `travel (mm)`, `travel in mm`, `travel / mm` or `travel / (mm)`."""
 SETTING = re.compile(r"(#*)([^=:]*)([=:])(.*)")
 """A remark, or a line before the columns, with a name and a text."""
 SEPARATORS, BLANK = ";\t,", ' \t,;"'
@@ -60,7 +60,7 @@ def spelled(unit: str) -> str:
     """Return a unit as it is called here."""
     for sign, plain in SPELLINGS.items():
         unit = unit.replace(sign, plain)
-    unit = unit.replace(" ", "")
+    unit = unit.replace(" ", "").strip("[]()")
     return OTHERS.get(unit, unit)
 
 
@@ -138,7 +138,9 @@ class Table:
 
     def refuse_two_signs(self) -> None:
         """Raise an error for the first cell with a comma where others have a decimal point, or the other way round."""
-        if self.separator == "," or not all(any(sign in row for row in self.rows.values()) for sign in ",."):
+        # A comma that is no separator is in quotes.
+        signs = '".' if self.separator == "," else ",."
+        if not all(any(sign in row for row in self.rows.values()) for sign in signs):
             return
         seen: dict[str, tuple[int, int, str, str]] = {}
         for name, place in self.places.items():
@@ -247,7 +249,7 @@ def name_columns(table: Table, cells: list[str]) -> None:
 
 def units_below(cells: list[str], table: Table) -> dict[str, str]:
     """Return the units by column if a row has them; nothing if it has a number that is no unit."""
-    found = {name: spelled(cells[place].strip("[]() ")) for name, place in table.places.items() if place < len(cells)}
+    found = {name: spelled(cells[place]) for name, place in table.places.items() if place < len(cells)}
     if any(is_number(unit) and unit not in table.known[name] for name, unit in found.items()):
         return {}
     return {name: unit for name, unit in found.items() if unit}

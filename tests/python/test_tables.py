@@ -31,6 +31,7 @@ EXPORTS = {
     + "".join(f"{travel},{float(force) / 0.980665!r}\n" for travel, force in (row.split(",") for row in PLAIN.split())),
     "micro sign": "travel [\N{MICRO SIGN}m],force [cN]\n" + PLAIN,
     "Greek mu": "travel [\N{GREEK SMALL LETTER MU}m],force [cN]\n" + PLAIN,
+    "quotients": "travel / (um),force / (cN)\n" + PLAIN,
     "row of units": "Travel,Force\n\N{MICRO SIGN}m,cN\n" + PLAIN,
     "row of units in brackets": "Travel,Force\n[um],[cN]\n" + PLAIN,
     "preamble": "Tester X;rev. 3\nOperator: A. B., travel and force\n\nDate;23.11.2026\n\nTravel [um];Force [cN]\n"
@@ -216,9 +217,11 @@ def test_all_inputs_of_the_component_may_be_in_a_table() -> None:
     assert set(INPUTS) == inputs | {"time"}
 
 
-@pytest.mark.parametrize("rows", ["0.0010\t3,801\n", "0,1\t2\n0.2\t3\n"])
-def test_commas_between_thousands_are_not_decimal_ones(tmp_path: Path, rows: str) -> None:
+@pytest.mark.parametrize(
+    ("separator", "rows"), [("\t", "0.0010\t3,801\n"), ("\t", "0,1\t2\n0.2\t3\n"), (",", '0.0010,"3,801"\n')]
+)
+def test_commas_between_thousands_are_not_decimal_ones(tmp_path: Path, separator: str, rows: str) -> None:
     path = tmp_path / "export.txt"
-    path.write_text("travel [mm]\tforce [cN]\n" + rows, encoding="utf-8")
+    path.write_text(f"travel [mm]{separator}force [cN]\n{rows}", encoding="utf-8")
     with pytest.raises(RelayContactError, match="allowed is one decimal sign"):
         read_measurement(path, COMPONENT, ["a"])
