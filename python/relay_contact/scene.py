@@ -144,12 +144,13 @@ class Scene:
         if len(self.table) < 2:
             return []
         time, stop = self.table["time"], self.stop
-        begin, end, spacing = time[0], time[-1], np.diff(time).min(initial=math.inf)
+        begin, end = time[0], time[-1]
+        spacing = np.diff(time).min(initial=end - begin)
         if begin >= stop or end < 0:
             text = f"not allowed, the run is from 0 to {stop:g} s"
             raise RelayContactError(f"inputs: time = {begin:g} to {end:g} s: {text}")
         # Times of a recorder are rounded.
-        if self.step > 1.01 * spacing:
+        if self.step > 1.01 * spacing > 0:
             text = f"allowed is at most {spacing:g} s, the shortest time between rows of the inputs"
             raise RelayContactError(f"communication step = {self.step:g} s: not allowed, {text}")
         told = {

@@ -167,6 +167,7 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
     [
         (np.arange(5.0), []),  # each row lasts until the next
         ([1.0, 1.5, 5.0], ["inputs begin at 0.001 s: before, their first values are held"]),
+        ([0.0], ["inputs end at 0 s, the run at 0.005 s: their last values are held"]),
         ([-1.0, 0.0, 1.0], ["inputs end at 0.001 s, the run at 0.005 s: their last values are held"]),
         ([0.0, 1000.0], ["inputs end at 1 s, the run at 0.005 s: is their time in s?"]),
     ],
