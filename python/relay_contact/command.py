@@ -103,7 +103,8 @@ def run_scene(given: argparse.Namespace) -> None:
             raise RelayContactError(f"--set {text}: {name} is given twice")
         value = value.strip()
         changes[name] = component.read(name, value)
-        if name in SPRING_FILES and Path(value).is_file():
+        carried = Path(component.folder) / "resources" / value
+        if name in SPRING_FILES and value and (Path(value).is_file() or not carried.is_file()):
             # Relative to where the command runs; its name alone is in those of table and figure.
             changes[name], value = str(Path(value).resolve()), Path(value).name
         words.append(f"{name}={value}")

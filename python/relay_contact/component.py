@@ -424,8 +424,10 @@ class Contact:
         return {name: rows[:taken, column] for column, name in enumerate(watched)}
 
     def get(self, name: str) -> float:
-        """Give the value of any variable, of an enumeration its number."""
+        """Give the value of any variable that is no text, of an enumeration its number."""
         kind = self.component.variables[self.component.name(name)].type
+        if kind == "String":
+            raise RelayContactError(f"{name}: a text, which is no output")
         read = getattr(self.fmu, f"get{'Integer' if kind == 'Enumeration' else kind}")
         return float(read(self.references(name))[0])
 
