@@ -263,7 +263,8 @@ def test_wrong_units_and_coarse_ring_downs_are_refused(tmp_path: Path) -> None:
     too_coarse, enough, coarse = (measured.record(0.25, rate, 0.01, SEED) for rate in (400.0, 225.0, 500.0))
     for wrong, message in (
         (
-            [replace(force, values=100 * force.values)],
+            # Of mN for cN, a little less by the scatter.
+            [replace(force, values=9.9 * force.values)],
             "columns travel, force: stiffness .* are the units of the columns",
         ),
         ([replace(force, over=1e3 * force.over)], "column travel: -0.1 m: not allowed, allowed is up to 0.02 m"),
@@ -289,6 +290,9 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     (label,) = result.missing
     assert label in names[:2]
     assert "the data tell it only together with" in result.missing[label]
+    # The spring is off its contact.
+    nothing = found(ring, parameters=["contact.overtravel"])
+    assert "the data hardly depend on it" in nothing.missing["contact.overtravel"]
     # With the true mass the frequency tells the stiffness: of a beam with a rivet, by the exact solution.
     relay = tmp_path / "relay.toml"
     relay.write_text(

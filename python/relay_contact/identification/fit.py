@@ -175,6 +175,9 @@ class Fit:
                 last = at.copy(), self.derivatives(at)
             return last[1]
 
+        if not (slopes := jacobian(self.logarithms)).any():
+            # The data tell nothing of any.
+            return self.logarithms, slopes
         free = len(self.logarithms) - len(self.unknowns)
         low, high = ([getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items())
         found = least_squares(

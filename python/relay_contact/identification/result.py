@@ -29,7 +29,7 @@ SAMPLED = 3.0
 """Rows per period of a ring-down, at least, by the record and by the relay's file: what seems slower than it is would
 have to be twice as fast as the file says."""
 PERIODS = 1.5  # of a ring-down in a record, at least
-BEYOND = {FORCE: 10.0, RESPONSE: 30.0, CHATTER: 30.0, RINGDOWN: 5.0, FREQUENCY: 5.0}
+BEYOND = {FORCE: 5.0, RESPONSE: 30.0, CHATTER: 30.0, RINGDOWN: 5.0, FREQUENCY: 5.0}
 """Measured over predicted by the relay's file, or the reverse, from which on a unit is wrong: of the stiffness, of the
 median amplitude or level, of the frequency."""
 OPENS = 0.98  # part of the preload from which on a force amplitude opens the contact
