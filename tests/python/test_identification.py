@@ -406,7 +406,10 @@ def test_an_uncertain_spring_of_the_fixed_contact_widens_the_interval(tmp_path: 
     """The force goes with Young's modulus of both springs, and with the cube of the thickness of one."""
     strip, relay, data = (tmp_path / name for name in ("strip.toml", "relay.toml", "force.csv"))
     strip.write_text("[[segment]]\nlength = 0.01\nwidth = 4e-3\nthickness = 3e-4\n")
-    relay.write_text("parameters.fixed.file = 'strip.toml'\nuncertainty.fixed.spring.thickness = 0.02\n")
+    relay.write_text(
+        "parameters.fixed.file = 'strip.toml'\nuncertainty.fixed.spring.thickness = 0.02\n"
+        "[[model]]\n[[model]]\nparameters.beam.file = 'strip.toml'\n"
+    )
     rows = []
     for travel in np.linspace(-1e-4, 1e-4, 5):
         values: Values = {"fixed.file": str(strip), "contact.overtravel": 2e-4 + travel}
@@ -414,8 +417,13 @@ def test_an_uncertain_spring_of_the_fixed_contact_widens_the_interval(tmp_path: 
         rows.append((travel, force))
     write_table(data, "travel,force", rows)
     # Each parameter is sought once.
-    whole = found(data, relay=relay, parameters=["beam.youngsModulus", "beam_youngsModulus"])
+    out = tmp_path / "found"
+    whole = found(data, relay=relay, parameters=["beam.youngsModulus", "beam_youngsModulus"], out=out)
     assert not whole.missing
+    # Springs that are as they were are where they were.
+    written = Relay.read(out / "relay.toml", COMPONENT)
+    for own, name in ((written.positions["position 1"], "fixed.file"), (written.models[1].parameters, "beam.file")):
+        assert Path(str(own[name])).resolve() == strip.resolve()
     result = whole["beam.youngsModulus"]
     assert result.value == pytest.approx(COMPONENT.value({}, "beam.youngsModulus"), rel=1e-6)
     share = fixed / (fixed - moving)

@@ -1,6 +1,7 @@
 """The relay's file with what was found: values, their uncertainties, and a spring file beside it."""
 
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,8 @@ from tomlkit.container import OutOfOrderTableProxy
 from tomlkit.items import InlineTable
 
 from relay_contact.identification.result import Identification, has
-from relay_contact.spring import PREFIX, text_of
+from relay_contact.schema import leaves
+from relay_contact.spring import PREFIX, SPRING_FILES, text_of
 
 
 def number(value: float, half: float) -> Any:  # noqa: ANN401
@@ -47,8 +49,8 @@ def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: AN
         table = table[key]
 
 
-def text(result: Identification, spring: str) -> str:
-    """Give the text of the relay's file; `spring` is the name of the spring file beside it, if it has one."""
+def text(result: Identification, spring: str, folder: Path) -> str:
+    """Give the text of the relay's file in a folder; `spring` is the name of the spring file there, if it has one."""
     content: Any = tomlkit.parse(result.path.read_text(encoding="utf-8-sig"))
     for name in ("parameters", "uncertainty"):
         if name not in content:
@@ -69,10 +71,13 @@ def text(result: Identification, spring: str) -> str:
     content["correlation"]["names"] = names
     # With fewer digits strong correlations might not be possible together.
     content["correlation"]["matrix"] = [[round(each, 8) for each in row] for row in matrix]
-    if spring:
-        for table in (content["parameters"], *(each.get("parameters", {}) for each in tables.values())):
-            if has({"parameters": table}, "beam.file"):
-                put(table, "beam.file", tomlkit.item(spring))
+    of_relay = [content, *tables.values()]
+    for each in (*of_relay, *content.get("model", [])):
+        for name, _, value in list(leaves(each.get("parameters", {}))):
+            if name in SPRING_FILES and value:
+                found = spring if name == "beam.file" and any(each is own for own in of_relay) else ""
+                there = os.path.relpath(result.path.resolve().parent / str(value), folder.resolve())
+                put(each["parameters"], name, tomlkit.item(found or Path(there).as_posix()))
     return tomlkit.dumps(content)
 
 
@@ -104,4 +109,4 @@ def write(folder: Path, result: Identification) -> None:
     name, spring = spring_text(result)
     if name:
         (folder / name).write_text(spring, encoding="utf-8")
-    (folder / f"{result.path.stem}.toml").write_text(text(result, name), encoding="utf-8")
+    (folder / f"{result.path.stem}.toml").write_text(text(result, name, folder), encoding="utf-8")
