@@ -8,6 +8,7 @@ included: nothing is resampled.
 import importlib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -96,6 +97,7 @@ class Channel(NamedTuple):
     time: Any
     """None: by the rate."""
     values: Any
+    """Or what gives them, where they are not read before."""
     clock: str = "s"
     """Unit of time, empty if the file has none."""
     invalid: Any = False
@@ -127,6 +129,7 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         there = f"there are {', '.join(names)}" if names else "there is none"
         if channel:
             raise RelayContactError(f"{path}: no channel {channel}; {there}{nearest(channel, names)}")
+        there = f"there are {', '.join(others)}" if others else there
         raise RelayContactError(f"{path}: no channel with an acceleration in g or m/s2; {there}; a unit may be given")
     return [replace(each, others=tuple(others)) for each in found]
 
@@ -134,7 +137,8 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
 def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> Record:
     """Return a channel, `factor` its unit in SI, with values that are valid and differ, over a time that rises."""
     where, time, clock = f"{path}: channel {channel.name}", channel.time, spelled(channel.clock)
-    values = np.asarray(channel.values, dtype=float) * factor
+    given = channel.values() if callable(channel.values) else channel.values
+    values = np.asarray(given, dtype=float) * factor
     if time is None or len(time) == 0:
         if rate is None:
             raise RelayContactError(f"{where}: no time; give the rate, in samples a second")
@@ -179,8 +183,8 @@ def text(path: Path) -> Iterator[Channel]:
     time, clock = (table[there[0]], table.units[there[0]] and "s") if there else (None, "s")
     for name, unit in table.units.items():
         if name not in TIME:
-            usable = unit in ACCELERATIONS or not unit
-            yield Channel(name, unit, time, table.numbers(name) if usable else (), clock)
+            # Words of others are not read.
+            yield Channel(name, unit, time, partial(table.numbers, name), clock)
 
 
 def asked(package: str, path: Path) -> Any:  # noqa: ANN401

@@ -28,7 +28,11 @@ def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> Non
     (asked,) = read(path, "Y")
     assert asked.channel == "y"
     # What is left out is told, unless one channel is asked for.
-    assert ["temp (degC)" in " ".join(each.notes) for each in (first, second, asked)] == [True, True, False]
+    assert ["temp (degC)" in " ".join(each.notes) for each in (first, second, asked)] == [
+        True,
+        True,
+        False,
+    ]
     # The units of the file count.
     assert np.array_equal(read(path, unit="g")[1].acceleration, second.acceleration)
     assert [note for note in first.notes if "12.5 s" in note]
@@ -47,7 +51,9 @@ def test_text_without_time_has_a_rate(tmp_path: Path) -> None:
     (record,) = read(path, rate=50e3)
     assert record.time == pytest.approx(TIME - 12.5, abs=1e-12)
     path.write_text("time [s],acceleration\n" + "\n".join(f"{t},{a}" for t, a in zip(TIME, VALUES, strict=True)))
-    with pytest.raises(RelayContactError, match="no channel with an acceleration in g or m/s2; there are acceleration"):
+    with pytest.raises(
+        RelayContactError, match=r"no channel with an acceleration in g or m/s2; there are acceleration \(no"
+    ):
         read(path)
     assert read(path, unit="g")[0].acceleration == pytest.approx(G * VALUES)
     path.write_text(path.read_text().replace("time [s]", "time"))
@@ -142,6 +148,13 @@ def test_samples_that_a_file_marks_as_invalid_and_other_masters_than_time_are_re
             file.save(path, overwrite=True)
         with pytest.raises(RelayContactError, match=message):
             read(path)
+
+
+def test_words_beside_a_record_are_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "told.csv"
+    path.write_text("time [ms],a [g],note\n" + MORE.replace("\n", ",calm\n") + "13,2,rough\n")
+    (record,) = read(path)
+    assert record.others == ("note (no unit)",)
 
 
 def test_packages_are_asked_for_only_where_they_are_needed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
