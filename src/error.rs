@@ -105,12 +105,13 @@ pub enum Remark {
         number(*fork)
     )]
     Joined { name: &'static str, file: String, fork: f64 },
-    /// A damping ratio that may be meant in per cent.
+    /// A damping that may be meant in per cent, or in another unit than s.
     #[error(
-        "{name} = {file}: damping = {} of the lowest mode is a ratio to the critical one, {} % of it",
-        number(*damping), number(100.0 * damping)
+        "{spring}.stiffnessDamping, {spring}.massDamping or damping in {spring}.file: the lowest mode has {:.0} % of its critical \
+         damping; are they in s, 1/s and parts of 1?",
+        100.0 * damping
     )]
-    Damped { name: &'static str, file: String, damping: f64 },
+    Damped { spring: &'static str, damping: f64 },
     /// A spring bent so far that a linear beam misses a part of its force.
     #[error(
         "contact.overtravel = {} m: the spring is bent by {bent:.2} of its length of {} m; an elastica under a load along y is \

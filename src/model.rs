@@ -148,7 +148,7 @@ impl Model {
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
         let of_scene = [self.bent_far(), self.friction_at_touch(), self.no_interruption()];
         let remarks = of_scene.into_iter().flatten().chain(unstable).chain(not_used);
-        remarks.chain(self.of_files()).chain(self.few_modes()).collect()
+        remarks.chain(self.joined()).chain(self.damped()).chain(self.few_modes()).collect()
     }
 
     /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has
@@ -203,27 +203,27 @@ impl Model {
         })
     }
 
-    /// Springs whose tongues move as one, and those whose damping may be meant in per cent.
-    fn of_files(&self) -> impl Iterator<Item = Remark> {
+    /// Springs whose tongues move as one.
+    fn joined(&self) -> impl Iterator<Item = Remark> {
         let forks = self.scene.effects.parallel_contact;
         let files = [
             (&self.scene.spring, StringParameter::BeamFile, forks),
             (&self.scene.fixed_spring, StringParameter::FixedFile, false),
         ];
         files.into_iter().filter_map(|(spring, parameter, forks)| {
+            let Shape::Segments(segments) = &spring.as_ref()?.shape else { return None };
+            let fork = segments.fork_position.filter(|_| !forks)?;
             let (name, file) = (parameter.variable().name, self.scene.string(parameter).to_owned());
-            match &spring.as_ref()?.shape {
-                Shape::Segments(segments) if !forks => {
-                    let fork = segments.fork_position?;
-                    Some(Remark::Joined { name, file, fork })
-                }
-                Shape::Segments(_) => None,
-                Shape::Modes(given) => {
-                    let lowest = given.modes.iter().min_by(|a, b| a.frequency.total_cmp(&b.frequency))?;
-                    let damping = lowest.damping.filter(|damping| *damping >= MOST_DAMPING)?;
-                    Some(Remark::Damped { name, file, damping })
-                }
-            }
+            Some(Remark::Joined { name, file, fork })
+        })
+    }
+
+    /// Springs whose damping may be meant in per cent, or in another unit than s.
+    fn damped(&self) -> impl Iterator<Item = Remark> {
+        [("beam", false), ("fixed", true)].into_iter().filter_map(|(spring, fixed)| {
+            let lowest = self.modes.iter().find(|mode| mode.tip != 0.0 && (mode.fixed != 0.0) == fixed)?;
+            let damping = lowest.damping / (2.0 * lowest.omega_squared.sqrt());
+            (damping >= MOST_DAMPING).then_some(Remark::Damped { spring, damping })
         })
     }
 

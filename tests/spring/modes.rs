@@ -68,7 +68,12 @@ fn what_does_not_count_beside_a_file_is_told() {
 }
 
 #[test]
-fn damping_that_may_be_in_per_cent_is_told() {
+fn damping_that_may_be_in_per_cent_or_another_unit_is_told() {
+    for (damping, told) in [(8.063e-5, false), (8.063e-4, true)] {
+        let mut scene = Scene::default();
+        scene.beam.stiffness_damping = damping;
+        assert_eq!(matches!(Model::new(&scene, 0.0).unwrap().remarks()[..], [Remark::Damped { .. }]), told);
+    }
     for (ratio, told) in [(0.34, false), (1.0, true)] {
         let mut modes = modes_of(&Model::new(&Scene::default(), 0.0).unwrap());
         // Higher modes may have any.
