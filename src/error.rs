@@ -1,7 +1,7 @@
 //! Errors of setting up a scene and of integrating it. Every message names the variable, its value and what is
 //! allowed, so that it can be shown to the user unchanged.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A scene that cannot be simulated.
@@ -112,6 +112,12 @@ pub enum Remark {
         100.0 * damping
     )]
     Damped { spring: &'static str, damping: f64 },
+    /// A material that may be meant in another unit.
+    #[error(
+        "{name} = {} {unit}: usual is {} to {}; is it meant in another unit?",
+        number(*value), number(*usual.start()), number(*usual.end())
+    )]
+    Unusual { name: &'static str, value: f64, unit: &'static str, usual: RangeInclusive<f64> },
     /// A spring bent so far that a linear beam misses a part of its force.
     #[error(
         "contact.overtravel = {} m: the spring is bent by {bent:.2} of its length of {} m; an elastica under a load along y is \

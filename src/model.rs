@@ -1,7 +1,7 @@
 //! The model: everything computed once from a scene.
 
 use std::array;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::armature::Armature;
 use crate::assembly::{Assembly, Laws, Roles};
@@ -25,7 +25,7 @@ use crate::scene::Scene;
 use crate::scene::spring::{Shape, SpringFile};
 use crate::slip_stability::{self, Unstable};
 use crate::state::State;
-use crate::variables::{ContactLawKind, RealParameter, StringParameter};
+use crate::variables::{ContactLawKind, RealParameter, StringParameter, Variable};
 
 /// Deflection at the preload, in lengths of the spring, above which the user is told what a linear beam misses, 1.
 const BENT_FAR: f64 = 0.1;
@@ -36,6 +36,10 @@ const RUBBING: Range<f64> = 0.1..0.6;
 
 /// Damping of the lowest mode of a contact spring that is hardly ever reached, 1: the specimen of the paper has 0.34.
 const MOST_DAMPING: f64 = 0.5;
+
+/// Young's modulus (Pa) and density (kg/m3) of springs: from soft plastics to tungsten.
+const USUAL: [(RealParameter, RangeInclusive<f64>); 2] =
+    [(RealParameter::BeamYoungsModulus, 1e9..=1e12), (RealParameter::BeamDensity, 500.0..=25_000.0)];
 
 /// Everything that is constant during a simulation.
 #[derive(Clone, Debug)]
@@ -148,7 +152,7 @@ impl Model {
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
         let of_scene = [self.bent_far(), self.friction_at_touch(), self.no_interruption()];
         let remarks = of_scene.into_iter().flatten().chain(unstable).chain(not_used);
-        remarks.chain(self.joined()).chain(self.damped()).chain(self.few_modes()).collect()
+        remarks.chain(self.joined()).chain(self.damped()).chain(self.unusual()).chain(self.few_modes()).collect()
     }
 
     /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has
@@ -224,6 +228,22 @@ impl Model {
             let lowest = self.modes.iter().find(|mode| mode.tip != 0.0 && (mode.fixed != 0.0) == fixed)?;
             let damping = lowest.damping / (2.0 * lowest.omega_squared.sqrt());
             (damping >= MOST_DAMPING).then_some(Remark::Damped { spring, damping })
+        })
+    }
+
+    /// Materials that may be meant in another unit, of the scene or of a segment.
+    fn unusual(&self) -> impl Iterator<Item = Remark> {
+        let springs = [&self.scene.spring, &self.scene.fixed_spring].into_iter().flatten();
+        let segments = springs.filter_map(|spring| match &spring.shape {
+            Shape::Segments(shape) => Some(&shape.segments),
+            Shape::Modes(_) => None,
+        });
+        let own: Vec<_> = segments.flatten().map(|segment| [segment.youngs_modulus, segment.density]).collect();
+        USUAL.into_iter().enumerate().filter_map(move |(k, (parameter, usual))| {
+            let of_segments = own.iter().filter_map(|segment| segment.get(k).copied().flatten());
+            let value = of_segments.chain([self.scene.real(parameter)]).find(|value| !usual.contains(value))?;
+            let Variable { name, unit, .. } = parameter.variable();
+            Some(Remark::Unusual { name, value, unit, usual })
         })
     }
 

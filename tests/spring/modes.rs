@@ -4,7 +4,7 @@ use relay_contact::error::Remark;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::{Mode, Model, reduced_modulus};
 use relay_contact::scene::Scene;
-use relay_contact::scene::spring::{GivenMode, Modes, Segments, Shape};
+use relay_contact::scene::spring::{GivenMode, Modes, Segment, Segments, Shape};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, RealOutput};
 use testing::close;
@@ -65,6 +65,20 @@ fn what_does_not_count_beside_a_file_is_told() {
     scene.fixed_spring = None;
     scene.effects.parallel_contact = true;
     assert_eq!(names(&scene), [""; 0]);
+}
+
+/// With a density in g/cm3 a contact that opens had passed with a margin of 18.
+#[test]
+fn a_material_that_may_be_in_another_unit_is_told() {
+    let told = |of_scene: f64, of_segment: Option<f64>| {
+        let mut scene = Scene::default();
+        scene.beam.density = of_scene;
+        let part = Segment { density: of_segment, ..segment(30e-3, [4e-3; 2], [0.2e-3; 2]) };
+        let scene = with(scene, Shape::Segments(Segments { segments: vec![part], ..Segments::default() }));
+        let remarks = Model::new(&scene, 0.0).unwrap().remarks();
+        remarks.iter().any(|remark| matches!(remark, Remark::Unusual { name: "beam.density", value: 8.25, .. }))
+    };
+    assert!(!told(8250.0, None) && told(8.25, None) && told(8250.0, Some(8.25)));
 }
 
 #[test]
