@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 from distributed import LocalCluster
 from scipy.linalg import block_diag
+from scipy.optimize import brentq
 
 from component import COMPONENT, ROOT, resting
 from elements import Part, assembled
@@ -39,11 +40,19 @@ RANDOM = next(test for test in MILITARY.tests if isinstance(test, Random))
 
 
 def largest_dip(frequency: Array, gains: list[complex]) -> float:
-    """Return what is exceeded within 15 min of RANDOM with a chance of one half, by Rice, of gains by frequency."""
+    """Return what is exceeded within 15 min of RANDOM with a chance of one half, of gains by frequency.
+
+    By Rice, with the clumps of E. H. Vanmarcke, Journal of Applied Mechanics 42 (1975) 215.
+    """
     density = RANDOM.spectrum(frequency) * np.abs(gains) ** 2
-    power = np.trapezoid(density, frequency)
-    mean = np.sqrt(np.trapezoid(density * frequency**2, frequency) / power)
-    return float(np.sqrt(2 * power * np.log(mean * 900 / np.log(2))))
+    power, first, second = (np.trapezoid(density * frequency**order, frequency) for order in range(3))
+    width = np.sqrt(1 - first**2 / (power * second))
+
+    def expected(dip: float) -> float:
+        return float(900 * np.sqrt(second / power) * np.exp(-(dip**2) / 2)
+                     * (1 - np.exp(-np.sqrt(2 * np.pi) * width**1.2 * dip)))  # fmt: skip
+
+    return float(np.sqrt(power) * brentq(lambda dip: expected(dip) - np.log(2), 1.0, 10.0))
 
 
 @pytest.fixture(scope="module")

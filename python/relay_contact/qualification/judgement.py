@@ -240,7 +240,7 @@ def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Arra
     if own and part * linear * eased > 1:
         level, decides = piece.threshold(specimen, 1.0, own, raised)
         part = level / piece.guess
-    rms, _ = response.moments(test)
+    rms, *_ = response.moments(test)
     density = test.spectrum(response.frequency) * response.gain**2
     share = np.cumsum(density) / density.sum()
     half = response.frequency[np.searchsorted(share, [0.25, 0.75])]

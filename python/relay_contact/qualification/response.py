@@ -27,6 +27,8 @@ from relay_contact.qualification.parts import CONTACT, Part, Rest, at_rest, part
 
 PHASES = 1024
 """Combinations of the phases of sines on noise, over which the rate of crossings is averaged."""
+SWELLS = 8
+"""Times that the largest dip of noise is put into the number of swells that it follows from."""
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
 LONG = 2**20  # steps of a course, from which on it is convolved in pieces
 CALM = 1e-6  # part of its largest force
@@ -97,23 +99,37 @@ class Response:
         frequency, factors = self.sine(test, opening)
         return float(frequency[factors.argmin()])
 
-    def moments(self, test: Random) -> tuple[float, float]:
-        """Return rms (N or m) and mean frequency (Hz) of force or gap in random vibration, without its sines."""
+    def moments(self, test: Random) -> tuple[float, float, float]:
+        """Return rms (N or m) and mean frequency (Hz) of force or gap in random vibration, without its sines.
+
+        Third is how wide its spectrum is about its centre, in parts of the mean frequency.
+        """
         density = test.spectrum(self.frequency) * self.gain**2
         step = self.frequency[1]
-        power = float(density.sum() * step)
-        return power**0.5, float((density * self.frequency**2).sum() * step / power) ** 0.5
+        power, first, second = (float((density * self.frequency**order).sum() * step) for order in range(3))
+        return power**0.5, (second / power) ** 0.5, max(1 - first**2 / (power * second), 0.0) ** 0.5
 
     def random(
-        self, test: Random, opening: float, chance: float = 0.5, moments: tuple[float, float] | None = None
+        self, test: Random, opening: float, chance: float = 0.5, moments: tuple[float, float, float] | None = None
     ) -> float:
-        """Return the factor of the level that fails within the test with a chance, by Rice's rate of crossings."""
+        """Return the factor of the level that fails within the test with a chance, by Rice's rate of crossings.
+
+        Those in one swell of a narrow resonance count once (E. H. Vanmarcke, Journal of Applied Mechanics 42, 1975,
+        p. 215): the largest dip is that of so many swells, whose peaks are independent.
+        """
         if not self.gain.any():
             return np.inf
-        rms, mean = moments or self.moments(test)
+        rms, mean, width = moments or self.moments(test)
         needed = self.reserve / kept(mean, opening)
         crossings = -np.log1p(-chance) / test.duration
-        largest = rms * np.sqrt(2 * np.log(mean / crossings))
+
+        def of(swells: float) -> float:
+            return float(np.sqrt(-2 * np.log(-np.expm1(np.log1p(-chance) / swells))))
+
+        dip = single = of(1 + mean * test.duration)
+        for _ in range(SWELLS):
+            dip = of(1 - mean * test.duration * np.expm1(-np.sqrt(2 * np.pi) * width**1.2 * dip))
+        largest = rms * dip
         if test.sines:
             frequency, level = np.array(test.sines).T
             size = G * level * np.interp(frequency, self.frequency, self.gain)
@@ -130,7 +146,9 @@ class Response:
             # It takes long to import.
             from scipy.optimize import brentq
 
-            largest = brentq(excess, rms, largest + size.sum() + rms)
+            # In a swell they cross at phases that differ: each of these counts.
+            crossed = brentq(excess, rms, size.sum() + rms * (single + 1)) if excess(rms) > 0 else rms
+            largest = min(crossed, largest + size.sum())
         return float(needed / largest)
 
     def change(self, course: Array) -> Array:
