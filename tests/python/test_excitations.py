@@ -19,12 +19,12 @@ from relay_contact import Array, RelayContactError, Values, write_table
 from relay_contact.command import main
 from relay_contact.figures import three
 from relay_contact.files import read_toml
-from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis
+from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis, trials
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.page import UNKNOWN
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
-from relay_contact.qualification.trials import Piece, Specimen, eased, middle_dip, noise, pieces
+from relay_contact.qualification.trials import Piece, Specimen, Weakest, eased, middle_dip, noise, pieces, sine_near
 from relay_contact.qualification.words import COARSE, limits
 
 G = 9.80665
@@ -361,6 +361,23 @@ def test_clipping_bounds_what_follows_the_acceleration_and_hardly_what_resonates
     bound = stiff.reserve / (3 * 3.082 * G)
     assert factors["stiff"] * stiff.random(test, 0.0) == pytest.approx(bound, rel=0.02)
     assert 1 <= factors["resonant"] < 1.05
+
+
+def test_a_sweep_finds_what_no_vibration_raised_at_the_resonance_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each level is swept once, where it fails included."""
+    run: list[float] = []
+
+    def swept(*given: Any, **_: int) -> Any:  # noqa: ANN401
+        run.append(given[-1])
+        return {"closed contact": 1e-5} if given[-1] >= 2.0 else {}, 0.0, 280.0
+
+    monkeypatch.setattr(trials, "vibrated", lambda *_: ({}, [], 0.0))
+    monkeypatch.setattr(trials, "swept", swept)
+    test = Sine("a", "", READ, 1.0, frequencies=(50.0, 1000.0), sweep_rate=1.0)
+    found = sine_near(replace(CALM, response=oscillator(300.0, 30.0)), test, 300.0, 2.5)
+    assert found == Weakest(280.0, found.factor, ["closed contact"], 1)
+    assert found.factor == pytest.approx(2.0, rel=1e-4)
+    assert len(run) == len(set(run))
 
 
 def test_a_dwell_at_resonance_and_steps_have_the_margins_of_the_sweep() -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from threading import Lock
 from typing import Any, NamedTuple
 
@@ -368,10 +368,11 @@ def followed(specimen: Specimen, test: Sine, first: float, order: int, least: We
     """
     level = least.factor * (1 - APART) if least.factor < MOST else guess
     between = specimen.part == STOP or (specimen.part == CONTACT and specimen.is_open)
-    if between or not swept(specimen, test, first, level, order)[0]:
+    run = cache(partial(swept, specimen, test, first, order=order))
+    if between or not run(level)[0]:
         return least
-    level, failed = threshold(swept_tried(specimen, test, first, order), min(guess, level))
-    return Weakest(swept(specimen, test, first, level, order)[2], level, failed, order)
+    level, failed = threshold(lambda factor: run(factor)[:2], min(guess, level))
+    return Weakest(run(level)[2], level, failed, order)
 
 
 @dataclass(frozen=True)
