@@ -286,3 +286,20 @@ def test_a_part_that_is_not_shaken_is_said_to_hold() -> None:
     assert levels[STOP].factor > 100
     assert levels[CONTACT].factor < levels[STOP].factor
     assert STOP not in seen.failed
+
+
+@pytest.mark.parametrize("unbalance", [0.2, 0.3, 0.5])
+def test_a_pulse_calms_down_beside_an_open_contact_and_a_stiff_core(unbalance: float) -> None:
+    """At a tolerance of 1e-11 one communication step had taken too many integration steps."""
+    values: Values = {
+        "beam.length": 16.2e-3, "beam.width": 2.2e-3, "beam.thickness": 0.31e-3, "beam.youngsModulus": 1.2e11,
+        "beam.density": 8800.0, "beam.stiffnessDamping": 1.2e-5, "tip.mass": 6.8e-5, "contact.overtravel": -0.26e-3,
+        "pusher.position": 13.5e-3, "pusher.stiffness": 5.6e4, "pusher.damping": 2.26, "effects.pusher": "Armature",
+        "armature.mass": 1.23e-3, "armature.stiffness": 190.0, "armature.damping": 0.115,
+        "armature.unbalance": unbalance, "armature.gapConstant": 0.13e-3, "armature.stopStiffness": 1.28e6,
+        "armature.stopRestitution": 0.53, "armature.returnForce": 0.1, "armature.holdForce": 15.2,
+        "armature.corePosition": 0.04e-3, "armature.restPosition": -0.52e-3,
+    }  # fmt: skip
+    own = position(values, LONG)
+    assert own.rest.is_open
+    assert all(each.specimen.response.reserve > 0 for each in own.parts)
