@@ -3,7 +3,7 @@
 //! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
 //! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
 //! stays below first touch by more than this error there is no contact; nor is there any where the bodies part faster than
-//! all that is unseen. Otherwise the interval is halved, first on the cubic, then by the exact motion. Modes that oscillate faster
+//! all that is unseen. Otherwise the interval is halved by the exact motion. Modes that oscillate faster
 //! than the interval resolves, or settle faster after a jump, are added with their amplitudes. An interval along which the
 //! engagement rises has one closing, which is found on cubics as well, to half the shortest step: each look at the motion gives the
 //! next one a nearer sample.
@@ -13,13 +13,11 @@ use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::constants::{DISTANT, HALVINGS, SHORTEST_FLIGHT, UNSEEN};
 use crate::integrator::events::cubic::Cubic;
 use crate::integrator::events::{Cut, Event, Locator, engagement_rounding};
+use crate::integrator::rounding::motion_rounding;
 use crate::link::Link;
 use crate::math::nodal::LONG;
 use crate::math::roots;
 use crate::state::LinkState;
-
-/// Halvings of the cubic between two samples before the motion in their middle is computed.
-const ON_CUBIC: u32 = 3;
 
 /// An open contact in which a touch is sought.
 #[derive(Clone, Copy)]
@@ -103,20 +101,27 @@ impl<'a, const S: usize> Locator<'a, S> {
 
     /// Whether the contact certainly stays open between two open samples, whose cubic is wrong by `error` (m).
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
+        let Cubic { a, b } = cubic;
         let (ripple, length) = (self.search.swings.ripple(cubic), cubic.length());
-        let (least, unseen) = (sought.negligible, (error + ripple.displacement, ripple.velocity));
-        // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most.
-        let steeper = 4.0 * error / length;
-        is_clear_along(sought.link, cubic, unseen, least, 0)
-            || is_clear_along(sought.link, cubic, (unseen.0, unseen.1 + steeper), least, ON_CUBIC)
-            || {
-                // It parts faster than all that is unseen could bring it back: by the motion that the damper resists, whose
-                // curvature is wrong by 32 times the error at most.
-                let time = sought.law.by_rate();
-                let bent = ripple.acceleration + 32.0 * error / (length * length);
-                let unseen = ripple.velocity + steeper + time * bent;
-                sought.resisted(&cubic.a) <= sought.unsure && cubic.rates(time).1 + unseen < 0.0
-            }
+        let (unseen, faster) = (error + ripple.displacement, ripple.velocity);
+        if sought.link.engagement(cubic.highest() + unseen, a.rate.max(b.rate) + faster) < sought.negligible {
+            return true;
+        }
+        let time = sought.law.by_rate();
+        let [from, to] = [a, b].map(|sample| sought.resisted(sample));
+        // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most, and a curvature by 32
+        // times that over its square. It parts faster than all that is unseen could bring it back, by the motion that the damper resists.
+        let bent = ripple.acceleration + 32.0 * error / (length * length);
+        if from <= sought.unsure && cubic.rates(time).1 + faster + 4.0 * error / length + time * bent < 0.0 {
+            return true;
+        }
+        // That motion ends at the higher sample if it is straight. Displacement and velocity bend away from it, by what they differ by
+        // beyond rounding.
+        let rounding = motion_rounding(self.whole.model, (sought.link, sought.start), self.whole.state).0;
+        let beyond = |error: f64| (error.abs() - rounding).max(0.0) / length;
+        let bent = 1.5 * beyond(b.d - a.d - 0.5 * length * (a.rate + b.rate));
+        let bend = 0.125 * length * (b.rate - a.rate).abs() + unseen + time * (faster + bent + 4.0 * beyond(error));
+        from.max(to) + bend < sought.negligible
     }
 
     /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it
@@ -229,14 +234,4 @@ impl<'a, const S: usize> Locator<'a, S> {
         }
         cubic.b
     }
-}
-
-/// Whether the engagement of a contact stays below `least` (m) along a cubic, with `unseen` displacement (m) and velocity (m/s)
-/// beside it.
-fn is_clear_along(link: &Link, cubic: &Cubic, unseen: (f64, f64), least: f64, halvings: u32) -> bool {
-    let (d, rate) = (cubic.highest() + unseen.0, cubic.a.rate.max(cubic.b.rate) + unseen.1);
-    if link.engagement(d, rate) < least {
-        return true;
-    }
-    halvings > 0 && cubic.halves().iter().all(|half| is_clear_along(link, half, unseen, least, halvings - 1))
 }

@@ -28,13 +28,6 @@ impl Cubic {
         Instant { at, d, rate }
     }
 
-    /// It in two.
-    pub(super) fn halves(&self) -> [Self; 2] {
-        let Self { a, b } = *self;
-        let middle = self.at(f64::midpoint(a.at, b.at));
-        [Self { a, b: middle }, Self { a: middle, b }]
-    }
-
     /// The greatest displacement, m.
     pub(super) fn highest(&self) -> f64 {
         let Self { a, b } = self;
