@@ -141,9 +141,9 @@ fn counts(
 ) -> Counts {
     let pusher = scene.pushed_at().map(|_| Law::linear(scene.pusher.stiffness, scene.pusher.damping));
     let blow = |law: Law| blow(scene, bending_force, &law);
-    let others = [parallel, second, pusher].map(|law| law.map_or(*own, blow));
+    let [parallel, second, pusher] = [parallel, second, pusher].map(|law| law.map_or(*own, blow));
     let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
-    springs.counts(own, &others, scene.solver.effective_tolerance(), asked)
+    springs.counts(&[*own, parallel, second, pusher], scene.solver.effective_tolerance(), asked)
 }
 
 /// A blow as the scene may have it.

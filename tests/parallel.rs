@@ -58,6 +58,29 @@ fn two_equal_contacts_are_one_of_twice_the_constant() {
     }
 }
 
+/// On a fixed contact that springs, too: a blow of either excites both springs, whichever is the stiffer.
+#[test]
+fn two_different_contacts_on_one_tip_may_change_places() {
+    let mut scene = shaken(2000.0, 900.0);
+    scene.contact.damping = 1e-6;
+    let mut scene = pair(scene);
+    scene.fixed_spring = springs::uniform_spring(&scene, 1.0, 1.5);
+    scene.fixed.stiffness_damping = 1e-7;
+    scene.effects.contact_law = ContactLawKind::Rough;
+    (scene.contact.stiffness, scene.parallel.stiffness) = (1e7, 1e4);
+    let mut changed = scene.clone();
+    (changed.contact.stiffness, changed.parallel.stiffness) = (1e4, 1e7);
+    let (expected, _) = course(&scene, 1e-5, 300, BOTH);
+    let (found, last) = course(&changed, 1e-5, 300, BOTH);
+    assert!(last.real(RealOutput::ParallelLastOpening) > 0.0);
+    let greatest = expected.iter().flatten().copied().fold(force_scale(&scene), f64::max);
+    for (n, (expected, [first, other])) in expected.iter().zip(found).enumerate() {
+        for (expected, found) in expected.iter().zip([other, first]) {
+            near(n, found, *expected, 3e-6 * greatest);
+        }
+    }
+}
+
 #[test]
 fn a_contact_that_stays_back_further_than_the_other_is_pressed_is_not_there() {
     let mut scene = shaken(300.0, 900.0);

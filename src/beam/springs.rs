@@ -99,18 +99,21 @@ impl Springs {
         AtPlace { own: whole.own + tongues, across: whole.across - tongues, ..whole }
     }
 
-    /// Numbers of modes for a tolerance in blows of the contact, and of others on the moving spring; where `asked` is not 0 that
-    /// number of each that there is.
-    pub fn counts(&self, own: &Blow, others: &[Blow], tolerance: f64, asked: usize) -> Counts {
-        let most = |count: &dyn Fn(&Blow) -> usize| {
-            let blows = [own].into_iter().chain(others);
-            blows.fold(0, |most, blow| count(blow).max(most))
-        };
+    /// Numbers of modes for a tolerance in blows of the contact, of a parallel one, which presses the fixed contact's spring too,
+    /// and of others on the moving spring; where `asked` is not 0 that number of each that there is.
+    pub fn counts(&self, blows: &[Blow; 4], tolerance: f64, asked: usize) -> Counts {
+        let [contact, parallel, ..] = blows;
+        let most =
+            |blows: &[Blow], count: &dyn Fn(&Blow) -> usize| blows.iter().fold(0, |most, blow| count(blow).max(most));
         let (fixed, tongues) = (self.fixed.as_ref(), self.tongues.as_ref());
+        let at_fixed = |own: &Beside| {
+            let blows = [contact, parallel].map(|blow| own.blow(blow));
+            most(&blows, &|blow| own.spring.count(blow, tolerance))
+        };
         let needed = [
-            most(&|blow| self.moving.count(blow, tolerance)),
-            fixed.map_or(0, |fixed| fixed.spring.count(&fixed.blow(own), tolerance)),
-            tongues.map_or(0, |tongues| most(&|blow| tongues.spring.count(blow, tolerance))),
+            most(blows, &|blow| self.moving.count(blow, tolerance)),
+            fixed.map_or(0, at_fixed),
+            tongues.map_or(0, |tongues| most(blows, &|blow| tongues.spring.count(blow, tolerance))),
         ];
         let counts = if asked == 0 { needed } else { self.of_each(asked) };
         within(counts, self.room())
