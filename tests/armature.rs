@@ -8,7 +8,7 @@ use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{BooleanOutput, ExcitationKind, PusherKind, RealOutput};
-use testing::scenes::{largest_difference, shaken};
+use testing::scenes::{course, largest_difference, shaken};
 
 /// An armature that feels all of its weight, and whose pusher meets the spring on the way to its core.
 fn relay() -> Scene {
@@ -184,6 +184,32 @@ fn the_force_of_the_magnet_bends_where_a_gap_opens() {
         // A bend of the force inside a step of that method costs it some 1e-12; a bend inside one of the component's cost 1e-6.
         close(velocity, expected, 1e-11);
         assert!(gap > 2e-6);
+    }
+}
+
+/// A flight of microseconds, begun and ended within a step: where the stop lets go, the armature hardly moves.
+#[test]
+fn a_gap_that_closes_within_the_step_that_opens_it_is_one() {
+    let mut scene = Scene::default();
+    scene.effects.pusher = PusherKind::Armature;
+    scene.contact.overtravel = -4e-5;
+    (scene.pusher.position, scene.pusher.stiffness, scene.pusher.damping) = (1.16e-2, 2e4, 0.05);
+    let armature = &mut scene.armature;
+    (armature.mass, armature.stiffness, armature.return_force, armature.damping) = (1.5e-3, 17.5, 0.73, 0.01);
+    (armature.rest_position, armature.core_position, armature.unbalance) = (5e-5, 1.2e-4, 1.0);
+    (armature.hold_force, armature.gap_constant) = (2.2, 2e-4);
+    (armature.stop_stiffness, armature.stop_restitution) = (1.2e6, 0.5);
+    scene.effects.excitation = ExcitationKind::HalfSine;
+    (scene.excitation.amplitude, scene.excitation.duration) = (-1271.6, 3e-4);
+    scene.solver.tolerance = 1e-8;
+    let velocities = |maximum_step: f64| {
+        let mut scene = scene.clone();
+        scene.solver.maximum_step = maximum_step;
+        course(&scene, 2e-4, 30, [RealOutput::ArmatureVelocity]).0
+    };
+    // Steps shorter than the flight see the gap at their end.
+    for ([found], [expected]) in velocities(0.0).iter().zip(velocities(3e-6)) {
+        assert!((found - expected).abs() <= 1e-9, "{found} {expected}");
     }
 }
 
