@@ -103,25 +103,22 @@ impl<'a, const S: usize> Locator<'a, S> {
     fn is_clear(&self, sought: &Sought, cubic: &Cubic, error: f64) -> bool {
         let Cubic { a, b } = cubic;
         let (ripple, length) = (self.search.swings.ripple(cubic), cubic.length());
-        let (unseen, faster) = (error + ripple.displacement, ripple.velocity);
-        if sought.link.engagement(cubic.highest() + unseen, a.rate.max(b.rate) + faster) < sought.negligible {
+        let highest = cubic.highest() + error + ripple.displacement;
+        if sought.link.engagement(highest, a.rate.max(b.rate) + ripple.velocity) < sought.negligible {
             return true;
         }
         let time = sought.law.by_rate();
-        let [from, to] = [a, b].map(|sample| sought.resisted(sample));
         // A cubic wrong by this much in the middle has a slope wrong by four times that over its length at most, and a curvature by 32
         // times that over its square. It parts faster than all that is unseen could bring it back, by the motion that the damper resists.
         let bent = ripple.acceleration + 32.0 * error / (length * length);
-        if from <= sought.unsure && cubic.rates(time).1 + faster + 4.0 * error / length + time * bent < 0.0 {
+        if sought.resisted(a) <= sought.unsure
+            && cubic.rates(time).1 + ripple.velocity + 4.0 * error / length + time * bent < 0.0
+        {
             return true;
         }
-        // That motion ends at the higher sample if it is straight. Displacement and velocity bend away from it, by what they differ by
-        // beyond rounding.
         let rounding = motion_rounding(self.whole.model, (sought.link, sought.start), self.whole.state).0;
-        let beyond = |error: f64| (error.abs() - rounding).max(0.0) / length;
-        let bent = 1.5 * beyond(b.d - a.d - 0.5 * length * (a.rate + b.rate));
-        let bend = 0.125 * length * (b.rate - a.rate).abs() + unseen + time * (faster + bent + 4.0 * beyond(error));
-        from.max(to) + bend < sought.negligible
+        let rise = cubic.rise(time, error, rounding) + ripple.displacement + time * ripple.velocity;
+        sought.resisted(a) + rise < sought.negligible
     }
 
     /// Engagement that does not count as contact, m. Just after an opening: what the resolution of time has left of it

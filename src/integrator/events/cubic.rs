@@ -68,6 +68,19 @@ impl Cubic {
         let vertex = if 0.0 < place && place < 1.0 { first + 0.5 * rise * place } else { first };
         (first.min(last).min(vertex), first.max(last).max(vertex))
     }
+
+    /// How far the displacement plus `time` (s) times the velocity of a motion rises above that of the first sample at most, m; the cubic
+    /// differs from the motion by `error` in its middle, of which `rounding` is none of the motion's.
+    pub(super) fn rise(&self, time: f64, error: f64, rounding: f64) -> f64 {
+        let Self { a, b } = self;
+        let (h, steeper) = (self.length(), b.rate - a.rate);
+        let beyond = |error: f64| (error.abs() - rounding).max(0.0) / h;
+        // Along a straight line to the other sample. Displacement and velocity bend away from theirs by an eighth of what the slope
+        // changes by, and by half again the difference of mean velocities; the velocity of a cubic is wrong by four times its error.
+        let straight = (b.d - a.d + time * steeper).max(0.0);
+        let bent = 1.5 * beyond(b.d - a.d - 0.5 * h * (a.rate + b.rate));
+        straight + 0.125 * h * steeper.abs() + h * bent + error + time * (bent + 4.0 * beyond(error))
+    }
 }
 
 #[cfg(test)]
@@ -94,5 +107,39 @@ mod tests {
         assert!(near(cubic.highest(), highest) && near(cubic.lowest(), lowest));
         let rates = cubic.rates(0.3);
         assert!(near(rates.0, least) && near(rates.1, greatest), "{rates:?} {least} {greatest}");
+    }
+
+    /// A motion of two frequencies, over intervals of which the cubic misses up to a third of what it changes by.
+    #[test]
+    fn a_motion_rises_no_more_than_its_cubic_tells() {
+        let of =
+            |at: f64| Instant { at, d: at.sin() + 0.1 * (5.0 * at).cos(), rate: at.cos() - 0.5 * (5.0 * at).sin() };
+        for (k, length) in (0..40).flat_map(|k| [1e-3, 0.03, 0.3, 0.6].map(|length| (0.17 * f64::from(k), length))) {
+            let cubic = Cubic { a: of(k), b: of(k + length) };
+            let middle = of(k + 0.5 * length);
+            let error = (middle.d - cubic.at(middle.at).d).abs();
+            for time in [0.0, 0.1, 3.0] {
+                let rise = |at: &f64| of(*at).d - of(k).d + time * (of(*at).rate - of(k).rate);
+                let most = (0..=100).map(|n| rise(&(k + length * 0.01 * f64::from(n)))).fold(0.0, f64::max);
+                let told = cubic.rise(time, error, 0.0);
+                assert!(most <= told + 1e-15, "{k} {length} {time}: {most} {told}");
+            }
+        }
+    }
+
+    /// The damper of a pusher lets go as the motion turns: over so short a time rounding is larger than all else.
+    #[test]
+    fn rounding_is_no_rise() {
+        let (time, rounding) = (1.8e-5, 3e-19);
+        for length in [1e-9, 1e-11, 1e-14] {
+            let of = |at: f64, wrong| Instant {
+                at,
+                d: 2.66e-7 - 0.166 * at + 0.5 * 9e3 * at * at + wrong,
+                rate: -0.166 + 9e3 * at,
+            };
+            let cubic = Cubic { a: of(0.0, 0.0), b: of(length, 0.5 * rounding) };
+            let rise = cubic.rise(time, rounding, rounding);
+            assert!(rise < 2.0 * rounding + 9e3 * length * length, "{length}: {rise}");
+        }
     }
 }
