@@ -15,6 +15,7 @@ use crate::contact::law::Law;
 use crate::error::Remark;
 use crate::excitation::generator::Generator;
 use crate::force_error::Slowest;
+use crate::integrator::constants::MOTION_ROUNDING;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
 use crate::link::{CONTACT, Link, LinkLaw, Port};
@@ -116,6 +117,8 @@ impl Model {
                 *law = law.judged(tolerance, self.force_scale);
             }
         }
+        let at_rest: f64 = links.iter().map(|link| link.force.abs()).sum();
+        self.tolerance.newton = self.tolerance.newton.max(MOTION_ROUNDING * at_rest);
         self.slowest = Slowest::of(&self.modes, &ports);
         self.law = links.get(CONTACT).and_then(Link::contact).copied().unwrap_or(laws.contact);
         (self.ports, self.links, self.roles) = (ports, links, roles);

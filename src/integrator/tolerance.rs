@@ -11,7 +11,7 @@ pub struct Tolerance {
     pub(crate) force: f64,
     /// Added by a step.
     pub(crate) step: f64,
-    /// Left by Newton's method in a nodal force.
+    /// Left by Newton's method in a nodal force; no less than rounding of those at rest, which may be a thousand times that of the contact.
     pub(crate) newton: f64,
     /// Added by a step that ends where a contact opens, and force that counts as zero where an event is located: a blow makes it a
     /// hundred times larger.

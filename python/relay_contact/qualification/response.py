@@ -219,10 +219,7 @@ def answers(
         # Another relay, in which not all is held: it fails at rest.
         return dict.fromkeys(reserves, transformed(0.0, natural, np.zeros(WATCHED), 0.0))
     tolerance = EXACT
-    if rest.is_open:
-        # Smaller parts of the force of a stop are rounding: steps would have no end.
-        tolerance *= 10.0
-    else:
+    if not rest.is_open:
         # Relative to the force of the contact; that of a stop may be a thousand times larger, and is rounded.
         largest = max(reserves[part.name] for part in held)
         tolerance *= max(1.0, largest / max(reserves[CONTACT], ROUNDED * largest))
