@@ -55,7 +55,11 @@ impl Model {
                 limit: spring.statics.buckling_load(),
             });
         };
-        let resolution = springs.resolution(&basis, &own);
+        // What is missing shows in the stiffer of two contacts on one tip.
+        let stiffer = |other: &Blow| other.contact_stiffness > own.contact_stiffness;
+        let of_parallel = parallel.map(|law| blow(scene, bending_force, &law));
+        let hardest = of_parallel.filter(stiffer).unwrap_or(own);
+        let resolution = springs.resolution(&basis, &hardest);
         let Basis { modes, shapes, space, .. } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
@@ -92,7 +96,7 @@ impl Model {
                 closed_loop,
                 generator,
                 initial: *initial,
-                missed: springs.missed(&own),
+                missed: springs.missed(&hardest),
                 spring_length: spring.length(),
                 armature: springs.armature,
                 force_scale,

@@ -79,6 +79,14 @@ fn two_different_contacts_on_one_tip_may_change_places() {
             near(n, found, *expected, 3e-6 * greatest);
         }
     }
+    // Too few modes are told, whichever is the stiffer.
+    for modes in [12, 20] {
+        changed.solver.modes = modes;
+        let (found, last) = course(&changed, 1e-5, 300, BOTH);
+        let missed = expected.iter().zip(found).map(|(expected, found)| (expected[0] - found[1]).abs() / greatest);
+        let (missed, told) = (missed.fold(0.0, f64::max), last.real(RealOutput::SolverForceError));
+        assert!(missed > 1e-4 && told > missed, "{modes}: {missed} {told}");
+    }
 }
 
 #[test]

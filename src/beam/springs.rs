@@ -126,7 +126,7 @@ impl Springs {
         [of(&self.moving), beside(&self.fixed), beside(&self.tongues)]
     }
 
-    /// What modes left out do in a blow of the contact.
+    /// What modes left out do in a blow of a contact at the tip.
     pub fn resolution(&self, basis: &Basis, own: &Blow) -> Resolution {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.blow(own));
         let blows = [own, fixed.as_ref().unwrap_or(own), own];

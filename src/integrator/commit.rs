@@ -45,8 +45,10 @@ pub(crate) fn commit<const S: usize>(
         }
     }
     if state.steps.is_multiple_of(MANY_STEPS.into()) {
-        let indentation = model.preload.indentation + state.contact().approach;
-        let stiffness = model.law.stiffness(indentation);
+        let conducting = model.links.iter().zip(&state.links).filter(|(link, _)| link.circuit.is_some());
+        let stiffnesses =
+            conducting.filter_map(|(link, at)| Some(link.contact()?.stiffness(link.approach + at.approach)));
+        let stiffness = stiffnesses.fold(0.0, f64::max);
         let error = model.resolution.error_of(&state.modes, stiffness);
         state.force_error.note_unresolved(error, model.force_scale);
     }
