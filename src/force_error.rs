@@ -2,7 +2,7 @@
 //!
 //! While no contact has opened or closed, errors die out with the vibrations: it is the largest error that a step has added, times
 //! a factor. Then a deviation of the motion is carried along ([`crate::integrator::deviation`]), which tells what force all errors
-//! so far make if each has the direction that grows most: half of it counts, if that is more. What the modes left out do
+//! so far make if each has the direction that grows most: that counts, if it is more. What the modes left out do
 //! ([`crate::beam::resolution`]) is added, grown as much as the deviation. Where slip is unstable ([`crate::slip_stability`]) all of
 //! it grows, at the rate of such a contact force, until the contact sticks, opens or slips back. How often the estimate is too
 //! small, and how often it exceeds the tolerance without need, is in docs/accuracy.md.
@@ -20,9 +20,6 @@ pub const MODES: usize = 8;
 
 /// Error of the contact force over the largest estimate of a step, 1. Fitted to 1,800 random relays of all kinds.
 const PER_STEP: f64 = 50.0;
-
-/// Part of the force of the deviation that counts, 1: errors do not all push the same way. Fitted to 2,400 random relays of all kinds.
-const OF_DEVIATION: f64 = 0.5;
 
 /// What is known of the error so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -116,7 +113,7 @@ impl Slowest {
 impl ForceError {
     /// Estimate of the error of the contact force so far, relative as the tolerance is; 1 at most: the force is not known at all.
     pub fn relative(&self) -> f64 {
-        let by_steps = (PER_STEP * self.largest).max(OF_DEVIATION * self.by_deviation);
+        let by_steps = (PER_STEP * self.largest).max(self.by_deviation);
         let by_all = by_steps + self.unresolved * self.largest_growth.exp();
         (by_all * self.largest_by_slip.exp()).min(1.0)
     }
