@@ -175,14 +175,15 @@ class Fit:
                 last = at.copy(), self.derivatives(at)
             return last[1]
 
-        if not (slopes := jacobian(self.logarithms)).any():
-            # The data tell nothing of any.
-            return self.logarithms, slopes
         free = len(self.logarithms) - len(self.unknowns)
         low, high = ([getattr(each, end) for each in self.unknowns] + [sign] * free for end, sign in ENDS.items())
+        start = np.clip(self.logarithms, low, high)
+        if not (slopes := jacobian(start)).any():
+            # The data tell nothing of any.
+            return start, slopes
         found = least_squares(
-            self.residuals, np.clip(self.logarithms, low, high), jacobian, bounds=(low, high), ftol=ENOUGH,
-            xtol=100 * ENOUGH, gtol=None, max_nfev=TRIALS,
+            self.residuals, start, jacobian, bounds=(low, high), ftol=ENOUGH, xtol=100 * ENOUGH, gtol=None,
+            max_nfev=TRIALS,
         )  # fmt: skip
         if found.status == 0:
             text = "begin from other values in the relay's file"
