@@ -5,7 +5,7 @@ use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Mode};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::Basis;
-use crate::beam::springs::{Counts, Springs};
+use crate::beam::springs::Springs;
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::law::{Law, Opening};
 use crate::error::SceneError;
@@ -46,8 +46,9 @@ impl Model {
         let force_scale = preload.force.max(bending_force);
         let contact = law(scene, power, &preload)?;
         let laws = Laws { contact, parallel, second };
-        let own = blow(scene, bending_force, &power);
-        let counts = counts(scene, &springs, (&own, [parallel, second], bending_force));
+        let blows = blows(scene, bending_force, &power, [parallel, second]);
+        let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
+        let counts = springs.counts(&blows, tolerance, asked);
         let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
@@ -56,10 +57,9 @@ impl Model {
             });
         };
         // What is missing shows in the stiffer of two contacts on one tip.
-        let stiffer = |other: &Blow| other.contact_stiffness > own.contact_stiffness;
-        let of_parallel = parallel.map(|law| blow(scene, bending_force, &law));
-        let hardest = of_parallel.filter(stiffer).unwrap_or(own);
-        let resolution = springs.resolution(&basis, &hardest);
+        let [own, other, ..] = &blows;
+        let hardest = if other.contact_stiffness > own.contact_stiffness { other } else { own };
+        let resolution = springs.resolution(&basis, hardest);
         let Basis { modes, shapes, space, .. } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
             .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
@@ -96,7 +96,7 @@ impl Model {
                 closed_loop,
                 generator,
                 initial: *initial,
-                missed: springs.missed(&hardest),
+                missed: springs.missed(hardest),
                 spring_length: spring.length(),
                 armature: springs.armature,
                 force_scale,
@@ -137,17 +137,10 @@ fn frequency((scene, springs, preload): (&Scene, &Springs, &Preload), laws: Laws
     Assembly::new(parts, laws, springs.armature.as_ref()).frequency(&modes, coil)
 }
 
-/// Numbers of modes for blows of the contact (`own`) and of all others: as many as the tolerance needs, or as the scene asks for.
-fn counts(
-    scene: &Scene,
-    springs: &Springs,
-    (own, [parallel, second], bending_force): (&Blow, [Option<Law>; 2], f64),
-) -> Counts {
+/// Blows of the contact, of a parallel and a second one, and of the pusher; of what is not there like those of the contact.
+fn blows(scene: &Scene, bending_force: f64, power: &Law, [parallel, second]: [Option<Law>; 2]) -> [Blow; 4] {
     let pusher = scene.pushed_at().map(|_| Law::linear(scene.pusher.stiffness, scene.pusher.damping));
-    let blow = |law: Law| blow(scene, bending_force, &law);
-    let [parallel, second, pusher] = [parallel, second, pusher].map(|law| law.map_or(*own, blow));
-    let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
-    springs.counts(&[*own, parallel, second, pusher], scene.solver.effective_tolerance(), asked)
+    [Some(*power), parallel, second, pusher].map(|law| blow(scene, bending_force, &law.unwrap_or(*power)))
 }
 
 /// A blow as the scene may have it.

@@ -90,14 +90,14 @@ impl ForceError {
             let places = slowest.shapes.get(port).zip(slowest.compliance.get(port));
             let Some(((force, before), (shape, compliance))) = links.zip(places) else { continue };
             let (y, rate) = (dot::<MODES, A>(shape, &next_q), dot::<MODES, A>(shape, &next_v));
-            // Faster modes yield at once, in series with the law. A magnet draws more the further it has moved.
+            // Faster modes yield at once, in series with the law.
             let yielding = 1.0 + tangent.stiffness.max(0.0) * compliance;
             let (stiffness, damping) = (tangent.stiffness / yielding, tangent.damping / yielding);
             // The force at the end is that of the law at the motion that the mean force causes.
             let (mut of_q, mut of_v) = ([0.0; MODES], [0.0; MODES]);
             add_products::<MODES, A>(&mut of_q, shape, &by_force);
             add_products::<MODES, A>(&mut of_v, shape, &free.q_from_v);
-            // Bounded, as the rule fails at -2.
+            // A magnet draws more the further it has moved; bounded, as the rule fails at -2.
             let gain = (stiffness * dot::<MODES, A>(shape, &of_q) + damping * dot::<MODES, A>(shape, &of_v)).max(-1.0);
             *force = -(stiffness * y + damping * rate + 0.5 * gain * before) / (1.0 + 0.5 * gain);
             let mean = [0.5 * (before + *force); MODES];

@@ -144,10 +144,11 @@
 //!
 //! # Communication steps
 //!
-//! While inputs stay as they are, or go on along their lines but for rounding ([`Drive::next`](crate::excitation::drive::Drive::next)), the
-//! integrator takes steps of its own, also beyond the communication point, and outputs are read from dense output, the polynomials of its last step ([`communication_step`], [`motion`], [`recorder`]). A long step that will be read
-//! inside must keep the tolerance there too ([`accuracy`]): that of the forces in the step where they are larger than the force scale,
-//! as nothing follows from what is read. A short step that cannot ends at the communication point, cut as at an event. A changed
+//! While inputs stay as they are, or go on along their lines but for rounding ([`Drive::next`](crate::excitation::drive::Drive::next)),
+//! the integrator takes steps of its own, also beyond the communication point. Outputs are read from dense output, the polynomials of
+//! its last step ([`communication_step`], [`motion`], [`recorder`]). A long step that will be read inside must keep the tolerance there
+//! too ([`accuracy`]): that of the forces in the step where they are larger than the force scale, as nothing follows from what is
+//! read. A short step that cannot ends at the communication point, cut as at an event. A changed
 //! input takes the motion back to the communication point: it is integrated again from the start of the step, under the former
 //! inputs. With inputs that bend at its start, a communication step is integrated to its end. Inputs act linearly in time within a
 //! communication step; a jump of their rate changes the dissipative force at once and restarts the step length.

@@ -28,11 +28,7 @@ def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> Non
     (asked,) = read(path, "Y")
     assert asked.channel == "y"
     # What is left out is told, unless one channel is asked for.
-    assert ["temp (degC)" in " ".join(each.notes) for each in (first, second, asked)] == [
-        True,
-        True,
-        False,
-    ]
+    assert ["temp (degC)" in " ".join(each.notes) for each in (first, second, asked)] == [True, True, False]
     # The units of the file count.
     assert np.array_equal(read(path, unit="g")[1].acceleration, second.acceleration)
     assert [note for note in first.notes if "12.5 s" in note]

@@ -3,10 +3,10 @@
 //! Sign changes alone would miss a grazing contact. Between two samples of indentation and velocity the indentation is
 //! approximated by the Hermite cubic, whose error is estimated at a sample between them. If the maximum of the cubic
 //! stays below first touch by more than this error there is no contact; nor is there any where the bodies part faster than
-//! all that is unseen. Otherwise the interval is halved by the exact motion. Modes that oscillate faster
-//! than the interval resolves, or settle faster after a jump, are added with their amplitudes. An interval along which the
-//! engagement rises has one closing, which is found on cubics as well, to half the shortest step: each look at the motion gives the
-//! next one a nearer sample.
+//! all that is unseen, or where what the damper resists does not rise to a touch. Otherwise the interval is halved by the exact
+//! motion. Modes that oscillate faster than the interval resolves, or settle faster after a jump, are added with their amplitudes.
+//! An interval along which the engagement rises has one closing, which is found on cubics as well, to half the shortest step: each
+//! look at the motion gives the next one a nearer sample.
 
 use crate::contact::law::Law;
 use crate::integrator::collocation::part::{Instant, Whole};
