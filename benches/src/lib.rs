@@ -14,6 +14,7 @@
 
 pub mod component;
 pub mod cvode;
+#[cfg(feature = "diffsol")]
 pub mod diffsol;
 pub mod instances;
 pub mod integrator;

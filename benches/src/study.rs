@@ -11,7 +11,6 @@ use testing::scenes::largest_difference;
 
 use crate::component::Component;
 use crate::cvode::Cvode;
-use crate::diffsol::Diffsol;
 use crate::integrator::{Failure, Integrator, Run, SHORT};
 use crate::problem::Problem;
 use crate::radau::Reference;
@@ -27,8 +26,12 @@ const NEARLY: f64 = 1.3;
 const LONG: f64 = 0.5;
 
 /// The integrators that the component is compared with.
-fn peers() -> [Rc<dyn Integrator>; 2] {
-    [Rc::new(Cvode::default()), Rc::new(Diffsol)]
+fn peers() -> Vec<Rc<dyn Integrator>> {
+    vec![
+        Rc::new(Cvode::default()),
+        #[cfg(feature = "diffsol")]
+        Rc::new(crate::diffsol::Diffsol),
+    ]
 }
 
 /// One integrator with one tolerance.

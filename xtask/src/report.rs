@@ -34,7 +34,7 @@ pub fn with_component(task: &str) -> Result<()> {
 /// Measures time over accuracy and what instances cost, and writes tables and figures of `docs/accuracy.md`.
 pub fn accuracy(quick: bool) -> Result<()> {
     let mut run = cargo();
-    run.args(["run", "--release", "--package=benches", "--bin=accuracy"])
+    run.args(["run", "--release", "--package=benches", "--bin=accuracy", "--features=diffsol"])
         // Its own, as the library is built here with other features.
         .args(["--target-dir=target/benches", "--"]);
     if quick {

@@ -65,7 +65,7 @@ fn library() -> Result<()> {
     python::prepare()?;
     stage("lint", || {
         let mut lint = importers::workspace("clippy")?;
-        run_command(lint.arg("--features=conformance/types").args(LINT))
+        run_command(lint.arg("--features=conformance/types,benches/diffsol").args(LINT))
     })?;
     rust()?;
     if_installed("valgrind", is_there("valgrind"), valgrind::MISSING, valgrind::run)
