@@ -54,6 +54,7 @@ fn collocation(count: usize, by_root: bool) -> String {
     };
     let places = nodes.iter().map(|node| 2.0 * (node - 1.0) + 1.0);
     let places: Vec<_> = [-1.0].into_iter().chain(places).collect();
+    let with_start = lagrange(&places);
     let integrals = integrals(&nodes, by_root);
     let shapes = shapes(&nodes, by_root, &integrals);
     let impulses = integrals[0].error.iter().map(|impulse| impulse.abs());
@@ -62,13 +63,14 @@ fn collocation(count: usize, by_root: bool) -> String {
     format!(
         "Collocation {{ nodes: {:?}, variable: {}, places: {nodes:?}, shapes: {shapes}, at_start: {at_start:?}, \
          at_start_of_fewer: {:?}, weights: {:?}, leading: {:?}, quadrature: {quadrature:?}, impulse: {impulse:?}, \
-         with_start: &{:?}, nodal: &{:?} }}",
+         start: &{:?}, beside_start: &{:?}, nodal: &{:?} }}",
         times(&nodes, by_root),
         variable(by_root),
         [without(1), without(2), without(3)],
         integrals[0].end(),
         leading.collect::<Vec<_>>(),
-        lagrange(&places),
+        with_start[0],
+        &with_start[1..],
         lagrange(&places[1..]),
     )
 }

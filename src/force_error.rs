@@ -63,8 +63,8 @@ pub struct Deviation {
 /// The modes of a deviation, the slowest of a model first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Slowest {
-    /// Which they are, and the modes themselves.
-    modes: Vec<(usize, Mode)>,
+    /// The modes themselves.
+    modes: Vec<Mode>,
     /// Their natural angular frequencies, squared, 1/s2; zero where there is no mode.
     pub(crate) omega_squared: Lanes,
     /// Displacement of each port per mode.
@@ -92,7 +92,7 @@ impl Slowest {
         }
         let omega_squared = lanes(&|_, mode| mode.omega_squared);
         Self {
-            modes,
+            modes: modes.into_iter().map(|(_, mode)| mode).collect(),
             omega_squared,
             shapes,
             compliance,
@@ -100,11 +100,11 @@ impl Slowest {
         }
     }
 
-    /// Their free motion, of each by its index and itself.
-    pub(crate) fn free(&self, of: impl Fn(usize, &Mode) -> FreeMotion) -> FreeMotion<Lanes> {
+    /// Their free motion over a time (s).
+    pub(crate) fn free(&self, length: f64) -> FreeMotion<Lanes> {
         let mut motions = FreeMotion::default();
-        for (lane, (i, mode)) in self.modes.iter().enumerate() {
-            motions.set(lane, &of(*i, mode));
+        for (lane, mode) in self.modes.iter().enumerate() {
+            motions.set(lane, &FreeMotion::new(mode.omega_squared, mode.damping, length));
         }
         motions
     }

@@ -110,10 +110,8 @@ impl State {
 
     /// Takes over another state of a model with so many modes and links.
     pub(crate) fn copy(&mut self, other: &Self, modes: usize, links: usize) {
-        let own = self.modes.iter_mut().zip(&other.modes).take(modes);
-        own.for_each(|(own, other)| *own = *other);
-        let own = self.links.iter_mut().zip(&other.links).take(links);
-        own.for_each(|(own, other)| *own = *other);
+        copy_first(&mut self.modes, &other.modes, modes);
+        copy_first(&mut self.links, &other.links, links);
         Self {
             modes: _,
             links: _,
@@ -195,6 +193,13 @@ impl State {
     #[inline(always)]
     pub(crate) fn is_closed(&self) -> bool {
         self.links.iter().any(|link| link.closed)
+    }
+}
+
+/// Copies the first values of a list into another, as a whole.
+pub(crate) fn copy_first<T: Copy>(to: &mut [T], from: &[T], count: usize) {
+    if let (Some(to), Some(from)) = (to.get_mut(..count), from.get(..count)) {
+        to.copy_from_slice(from);
     }
 }
 

@@ -342,7 +342,11 @@ impl Law {
     /// above the least, and `g`.
     pub fn engagement(&self, d: f64, rate: f64) -> f64 {
         match self.opening {
-            Opening::Parting => (d - self.least).min(d + self.by_rate() * rate),
+            Opening::Parting => {
+                let (by_way, by_rate) = (d - self.least, d + self.by_rate() * rate);
+                // One instruction, where `f64::min` looks whether both are numbers.
+                if by_rate < by_way { by_rate } else { by_way }
+            }
             Opening::Tension => self.resisted(d, rate),
             Opening::Never => f64::INFINITY,
         }

@@ -18,8 +18,7 @@ impl<const S: usize> Whole<'_, S> {
         let contacts = self.model.links.iter().zip(&self.state.links).zip(&self.trial.links);
         let contacts = contacts.filter(|((link, at), _)| at.closed && link.circuit.is_some());
         let largest = contacts.fold(0.0_f64, |most, ((link, at), nodes)| {
-            let of_nodes = nodes.forces.iter().map(|force| (link.force + force).abs());
-            of_nodes.fold(most.max(at.force.abs()), f64::max)
+            most.max(at.force.abs()).max(greatest(&nodes.forces.map(|force| link.force + force)))
         });
         self.model.tolerance.read(largest)
     }

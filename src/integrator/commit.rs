@@ -9,11 +9,10 @@ use crate::integrator::constants::{MANY_STEPS, SEEN};
 use crate::integrator::dense_output::DenseSlip;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};
-use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::end;
 use crate::math::simd::compiled_for;
 use crate::model::Model;
-use crate::state::State;
+use crate::state::{State, copy_first};
 
 /// Moves a state, of which the recorder has taken what it needs, to the end of an accepted step; returns the course of slip over it.
 pub(crate) fn commit<const S: usize>(
@@ -26,9 +25,7 @@ pub(crate) fn commit<const S: usize>(
 ) -> Option<DenseSlip> {
     let slip = state.slip;
     advance_deviation(model, state, cache, trial, target);
-    for ((mode, end), _) in state.modes.iter_mut().zip(&trial.modes).zip(&model.modes) {
-        *mode = *end;
-    }
+    copy_first(&mut state.modes, &trial.modes, model.modes.len());
     state.time = target.time;
     state.displacements = drive.moved(state.displacements, target.length);
     for ((link, at), nodes) in model.links.iter().zip(&mut state.links).zip(&trial.links) {
@@ -77,12 +74,15 @@ fn advance_deviation<const S: usize>(
     let links = model.links.iter().zip(&trial.links).enumerate();
     let at_work = links.filter(|(_, (_, nodes))| nodes.tangent.stiffness != 0.0);
     let at_work = at_work.map(|(index, (link, nodes))| (index, link.port, nodes.tangent));
-    let known = cache.known(target.length, target.recurring);
-    let free = model.slowest.free(|i, mode| {
-        let known = known.and_then(|step| step.free(i));
-        known.unwrap_or_else(|| FreeMotion::new(mode.omega_squared, mode.damping, target.length))
-    });
-    compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, &free, at_work));
+    // A step that was cut has another length than the one that was prepared.
+    let own;
+    let free = if let Some(free) = cache.slowest(target.length) {
+        free
+    } else {
+        own = model.slowest.free(target.length);
+        &own
+    };
+    compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, free, at_work));
     if target.length > SEEN {
         state.force_error.note_deviation(&model.links, model.force_scale);
     }

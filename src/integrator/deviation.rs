@@ -138,7 +138,7 @@ mod tests {
     fn a_step_of_unknown_error_leaves_the_estimate_sound() {
         let modes = [Mode { omega_squared: 1.0, tip: 1.0, ..Mode::default() }];
         let slowest = Slowest::of(&modes, &[Port::new(&modes, |mode| mode.tip)]);
-        let free = slowest.free(|_, mode| FreeMotion::new(mode.omega_squared, mode.damping, 0.1));
+        let free = slowest.free(0.1);
         let mut of_steps = ForceError::default();
         of_steps.begin(&slowest, 0);
         for impulse in [f64::NAN, f64::INFINITY] {
@@ -158,7 +158,7 @@ mod tests {
         let modes = [of(1.0, 1.0, 0.0), of(0.0, 0.0, 1.0)];
         let ports = [|mode: &Mode| mode.tip, |mode: &Mode| mode.armature].map(|place| Port::new(&modes, place));
         let slowest = Slowest::of(&modes, &ports);
-        let free = slowest.free(|_, mode| FreeMotion::new(mode.omega_squared, mode.damping, 0.1));
+        let free = slowest.free(0.1);
         let mut error = ForceError { size: 1.0, ..ForceError::default() };
         let part = |error: &ForceError| error.deviation.energies(&slowest).next().unwrap();
         error.begin(&slowest, 0);

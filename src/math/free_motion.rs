@@ -139,14 +139,6 @@ impl FreeMotion {
 }
 
 impl<const N: usize> FreeMotion<[f64; N]> {
-    /// That of one of them.
-    pub fn get(&self, n: usize) -> Option<FreeMotion> {
-        let Self { q_from_q, q_from_v, v_from_q, v_from_v } = self;
-        let of = |values: &[f64; N]| values.get(n).copied();
-        let (q_from_q, q_from_v) = (of(q_from_q)?, of(q_from_v)?);
-        Some(FreeMotion { q_from_q, q_from_v, v_from_q: of(v_from_q)?, v_from_v: of(v_from_v)? })
-    }
-
     /// Sets that of one of them.
     pub fn set(&mut self, n: usize, one: &FreeMotion) {
         let Self { q_from_q, q_from_v, v_from_q, v_from_v } = self;
@@ -186,13 +178,12 @@ mod tests {
                     let damping = [2.0 * first, 3.4 * second];
                     let together = FreeMotion::side_by_side::<2, Separate>(&Roots::of(squares, damping), &[t; 2]);
                     for (n, (omega, damping)) in omega.into_iter().zip(damping).enumerate() {
-                        let one = together.get(n).unwrap();
                         let alone = FreeMotion::new(omega * omega, damping, t);
                         let wrong = [
-                            one.q_from_q - alone.q_from_q,
-                            omega * (one.q_from_v - alone.q_from_v),
-                            (one.v_from_q - alone.v_from_q) / omega,
-                            one.v_from_v - alone.v_from_v,
+                            together.q_from_q[n] - alone.q_from_q,
+                            omega * (together.q_from_v[n] - alone.q_from_v),
+                            (together.v_from_q[n] - alone.v_from_q) / omega,
+                            together.v_from_v[n] - alone.v_from_v,
                         ];
                         // Angles and exponents are rounded.
                         let rounding = 8.0 * f64::EPSILON * (1.0 + omega * t);

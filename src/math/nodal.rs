@@ -60,16 +60,36 @@ pub fn end<const S: usize>(values: &Nodal<S>) -> f64 {
     values.last().copied().unwrap_or_default()
 }
 
+/// The larger of a number and the `most` so far, which is one: one instruction, where [`f64::max`] looks for both.
+#[inline(always)]
+fn larger(most: f64, value: f64) -> f64 {
+    if value > most { value } else { most }
+}
+
 /// The greatest magnitude.
 #[inline(always)]
 pub fn greatest<const S: usize>(values: &Nodal<S>) -> f64 {
-    let mut greatest = [0.0_f64; LANES];
+    let mut greatest = [0.0; LANES];
     for values in values.chunks(LANES) {
         for (greatest, value) in greatest.iter_mut().zip(values) {
-            *greatest = value.abs().max(*greatest);
+            *greatest = larger(*greatest, value.abs());
         }
     }
-    greatest.into_iter().fold(0.0, f64::max)
+    greatest.into_iter().fold(0.0, larger)
+}
+
+/// The highest of the values, and the lowest.
+#[inline(always)]
+pub fn range<const S: usize>(values: &Nodal<S>) -> (f64, f64) {
+    let mut both = [[f64::NEG_INFINITY; LANES]; 2];
+    for values in values.chunks(LANES) {
+        let [highest, deepest] = &mut both;
+        for ((highest, deepest), value) in highest.iter_mut().zip(deepest).zip(values) {
+            (*highest, *deepest) = (larger(*highest, *value), larger(*deepest, -value));
+        }
+    }
+    let [highest, deepest] = both.map(|values| values.into_iter().fold(f64::NEG_INFINITY, larger));
+    (highest, -deepest)
 }
 
 /// Adds `factor` times the values.

@@ -4,9 +4,11 @@ use std::mem;
 
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
+use crate::force_error::Lanes;
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::store::Store;
+use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::shared::{Home, Shared, Shelf};
@@ -72,9 +74,9 @@ impl<const S: usize> Cache<S> {
         }
     }
 
-    /// The coefficients for a length, if they are known.
-    pub fn known(&self, length: f64, recurring: bool) -> Option<StepCoefficients<'_, S>> {
-        self.places.known(length, recurring, self.collocation)
+    /// The free motion of the modes of a deviation over the length that was last prepared, if it is this one.
+    pub(crate) fn slowest(&self, length: f64) -> Option<&FreeMotion<Lanes>> {
+        self.places.slowest(length)
     }
 }
 

@@ -177,11 +177,6 @@ impl<'a, const S: usize> StepCoefficients<'a, S> {
         &self.rows[self.of_port[port].clone()]
     }
 
-    /// The free motion of a mode.
-    pub fn free(&self, mode: usize) -> Option<FreeMotion> {
-        self.end.get(mode / LANES)?.free.get(mode % LANES)
-    }
-
     /// The response of a port to a base acceleration, which loads the modes with their `participation`.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "there are coefficients for every port of the model")]

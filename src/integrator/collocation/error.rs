@@ -62,8 +62,7 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
             of_way += (tangent.stiffness * d).abs();
             passing += (tangent.damping * rate).abs();
             gain = gain.max(tangent.gain);
-            let force = |most: f64, force: &f64| most.max((link.force + force).abs());
-            largest = nodes.forces.iter().fold(largest, force);
+            largest = largest.max(greatest(&nodes.forces.map(|force| link.force + force)));
             rounding = rounding.max(FORCE_ROUNDING * largest.max(link.force));
             let mut missed = defects.0[unknown.link].abs();
             squares += missed * missed;

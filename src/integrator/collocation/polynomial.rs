@@ -7,7 +7,7 @@
 use crate::integrator::collocation::shapes::{Row, Shapes, Table, Variable};
 use crate::integrator::constants::{FAR_AHEAD, NEAR, SLOWEST_DECAY};
 use crate::integrator::course::turning_points;
-use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, scaled};
+use crate::math::nodal::{LONG, Nodal, SHORT, add, dot, range, scaled};
 use crate::math::prediction::{Prediction, centred, parabola_at_end, value_at};
 use crate::math::simd::{Arithmetic, Separate, Simd, compiled_for};
 
@@ -41,11 +41,12 @@ pub struct Collocation<const S: usize> {
     pub quadrature: f64,
     /// Greatest impulse up to a node that the shape of the error estimate makes, per step length.
     pub impulse: f64,
-    /// Lagrange polynomials of the start and the nodes, by powers of [`centred`] time; the first row is that of the
-    /// start.
-    with_start: &'static [Prediction],
+    /// Of the Lagrange polynomials of the start and the nodes that of the start, by powers of [`centred`] time.
+    start: &'static Prediction,
+    /// Those of the nodes.
+    beside_start: &'static [Prediction; S],
     /// The same for the nodes without the start.
-    nodal: &'static [Prediction],
+    nodal: &'static [Prediction; S],
 }
 
 impl<const S: usize> Collocation<S> {
@@ -73,9 +74,8 @@ impl<const S: usize> Collocation<S> {
     /// Whether the nodal polynomial through `values`, with the value `start` at the start of the step, may reach zero
     /// in it.
     pub fn comes_near_zero(start: f64, values: &Nodal<S>) -> bool {
-        let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let highest = values.iter().copied().fold(start, f64::max);
-        lowest <= NEAR * highest
+        let (highest, lowest) = range(values);
+        lowest <= NEAR * highest.max(start)
     }
 
     /// First place in the step (0 to 1) before `until` where the nodal polynomial through `values` is found below zero: at a node,
@@ -85,7 +85,7 @@ impl<const S: usize> Collocation<S> {
         let below = nodes.find(|(node, value)| **node < until && **value < 0.0);
         let below = below.map(|(node, _)| *node);
         let until = below.unwrap_or(until);
-        let polynomial = combine::<Separate>(self.nodal, values.iter());
+        let polynomial = combine::<S, Separate>(self.nodal, values, [0.0; LONG + 1]);
         let first = self.places.first().copied().unwrap_or_default();
         let turns = turning_points(Simd::Portable, &polynomial);
         let mut places = turns.iter().map(|y| 1.0 + y).filter(|x| (first..until).contains(x));
@@ -113,7 +113,7 @@ impl<const S: usize> Collocation<S> {
 
     /// The polynomial through the values at the start and at the nodes.
     pub fn through(&self, simd: Simd, start: f64, values: &Nodal<S>) -> Prediction {
-        compiled_for!(simd, A => combine::<A>(self.with_start, [start].iter().chain(values)))
+        compiled_for!(simd, A => combine::<S, A>(self.beside_start, values, scaled(self.start, start)))
     }
 
     /// First guess of a quantity at the nodes of a step `ratio` times as long as the last one, from its course there. Far
@@ -136,11 +136,14 @@ impl<const S: usize> Collocation<S> {
     }
 }
 
-/// The interpolation polynomial of the values in a Lagrange basis.
+/// The interpolation polynomial of the values in a Lagrange basis, added to another polynomial.
 #[inline(always)]
-fn combine<'a, A: Arithmetic>(basis: &[Prediction], values: impl Iterator<Item = &'a f64>) -> Prediction {
-    let mut sum = [0.0; LONG + 1];
-    for (value, polynomial) in values.zip(basis) {
+fn combine<const S: usize, A: Arithmetic>(
+    basis: &[Prediction; S],
+    values: &Nodal<S>,
+    mut sum: Prediction,
+) -> Prediction {
+    for (value, polynomial) in values.iter().zip(basis) {
         add::<{ LONG + 1 }, A>(&mut sum, *value, polynomial);
     }
     sum

@@ -12,7 +12,7 @@ use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unk
 use crate::integrator::collocation::slip::follow;
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
 use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
-use crate::math::nodal::{Nodal, add, add_products, dot, end, scaled};
+use crate::math::nodal::{Nodal, add, add_products, dot, end, greatest, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
@@ -159,7 +159,7 @@ impl<const S: usize> Step<'_, S> {
             *acceleration += driven;
         }
         let start_defect = driven + generated.start - dot::<S, A>(accelerations, &collocation.at_start);
-        let largest = accelerations.iter().fold(f64::MIN_POSITIVE, |largest, a| largest.max(a.abs()));
+        let largest = greatest(accelerations).max(f64::MIN_POSITIVE);
 
         let pushed = scaled(accelerations, -1.0);
         for (p, (port, motion)) in model.ports.iter().zip(&mut free.ports).enumerate() {

@@ -7,6 +7,7 @@ use bytemuck::{Zeroable, write_zeroes};
 
 use crate::beam::mode::Mode;
 use crate::excitation::generator::{Generator, Turns};
+use crate::force_error::Lanes;
 use crate::integrator::collocation::coefficients::{
     EndGroup, ModeColumns, NodeRows, Response, StepCoefficients, responses_before,
 };
@@ -105,6 +106,8 @@ struct Place<const S: usize> {
     length: f64,
     collocation: &'static Collocation<S>,
     turns: Turns<S>,
+    /// Free motion of the modes of a deviation.
+    slowest: FreeMotion<Lanes>,
 }
 
 /// Coefficients of steps of several lengths.
@@ -128,6 +131,8 @@ pub(crate) struct Store<const S: usize> {
     of_port: Vec<Range<usize>>,
     /// The place of each slot that a recurring length may have by its hash; 0: none yet.
     of_slot: Vec<u8>,
+    /// The place that was last asked for.
+    last: usize,
     /// While coefficients are computed: for each response, and for one mode.
     sums: Vec<Sum<S>>,
 }
@@ -168,6 +173,7 @@ impl<const S: usize> Store<S> {
             ends: Blocks::reserved(ends),
             of_port: of_port.collect(),
             of_slot: vec![0; SLOTS],
+            last: 0,
             sums: zeroed_vec(responses + 1),
         }
     }
@@ -201,16 +207,10 @@ impl<const S: usize> Store<S> {
         }
     }
 
-    /// The coefficients for a length, if they are known.
-    pub(super) fn known(
-        &self,
-        length: f64,
-        recurring: bool,
-        collocation: &Collocation<S>,
-    ) -> Option<StepCoefficients<'_, S>> {
-        let slot = self.of_slot.get(slot(length, collocation.variable)).filter(|_| recurring);
-        let place = slot.map_or(0, |place| usize::from(*place));
-        self.has(place, length, collocation).then(|| self.view(place))
+    /// The free motion of the modes of a deviation over the length that was last asked for, if it is this one.
+    pub(super) fn slowest(&self, length: f64) -> Option<&FreeMotion<Lanes>> {
+        let place = self.places.all.get(self.last)?;
+        (place.length.to_bits() == length.to_bits()).then_some(&place.slowest)
     }
 
     /// The coefficients for a length, `recurring`: one that is kept.
@@ -225,6 +225,7 @@ impl<const S: usize> Store<S> {
         if !self.has(place, length, collocation) {
             self.fill(place, length, model, collocation);
         }
+        self.last = place;
         self.view(place)
     }
 
@@ -255,7 +256,7 @@ impl<const S: usize> Store<S> {
         self.columns.add(ModeColumns::zeroed);
         self.following.add(|| [0.0; S]);
         self.ends.add(EndGroup::zeroed);
-        self.places.add(|| Place { length: 0.0, collocation, turns: Turns::NONE });
+        self.places.add(|| Place { length: 0.0, collocation, turns: Turns::NONE, slowest: FreeMotion::default() });
         self.places.all.len() - 1
     }
 
@@ -291,6 +292,7 @@ impl<const S: usize> Store<S> {
         let own = &mut self.places.all[place];
         (own.length, own.collocation) = (length, collocation);
         own.turns.fill(&model.generator, length, &collocation.nodes);
+        own.slowest = model.slowest.free(length);
         let mut modes = Modes {
             rows: self.rows.of_mut(place),
             of_port: &self.of_port,
