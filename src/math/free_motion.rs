@@ -168,6 +168,7 @@ mod tests {
     use crate::math::simd::Separate;
 
     #[test]
+    #[expect(clippy::indexing_slicing, reason = "two motions")]
     fn side_by_side_they_move_as_each_does_alone() {
         let ratios = [0.0, 0.3, 0.999, 1.0, 1.001, 1.3, 4.0, 40.0];
         for (k, t) in (0..400).map(|k| (k, 0.01 * 1.02_f64.powi(k))) {
