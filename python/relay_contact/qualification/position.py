@@ -268,7 +268,8 @@ class Position:
     def turn(self, test: Test, number: int, expected: float) -> float:
         """Return the logarithm of the level that fails in the component in a draw by that of linear theory.
 
-        It is sought where the relay as its file says fails: beside the weakest frequency by as much, in the same dip.
+        It is sought where the relay as its file says fails: beside the weakest frequency by as much, in the same dip;
+        and where a sweep follows a resonance, as for that relay.
         """
         surface = self.surfaces[test.name]
         linear = float(np.exp(surface.values[number]))
@@ -284,12 +285,9 @@ class Position:
         if isinstance(test, Sine):
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             weakest = self.weakest[test.name]
-            if order := weakest.order:
-                frequency = first if order == 1 else response.natural / order
-                tried = trials.swept_tried(specimen, test, frequency, order)
-            else:
-                beside = 1.0 if test.steps else weakest.frequency / nominal
-                tried = trials.sine_tried(specimen, test, float(np.clip(first * beside, *test.band)))
+            beside = 1.0 if test.steps or weakest.order else weakest.frequency / nominal
+            frequency = float(np.clip(first * beside, *test.band))
+            tried = trials.sine_tried(specimen, test, frequency)
         else:
             if isinstance(test, Random):
                 piece, sign = self.middle[test.name][2], 1.0
@@ -299,7 +297,12 @@ class Position:
                 ways = [(sign, each) for way, sign in test.directions.items() for each in self.pieces[test.name][way]]
                 sign, piece = min(ways, key=lambda way: response.course(way[1].course, way[0], lasting))
             tried = piece.tried(specimen, sign)
-        level, _ = threshold(tried, linear * np.exp(expected), roughly=True)
+        level, failed = threshold(tried, linear * np.exp(expected), roughly=True)
+        if isinstance(test, Sine):
+            found = trials.Weakest(frequency, level, failed)
+            if not test.steps and abs(level / linear - 1) > trials.APART:
+                found = trials.followed(specimen, test, first, 1, found, linear)
+            level = trials.across(specimen, test, found, linear).factor
         return float(np.log(level / linear))
 
     def dips(self, test: Test, scores: Array) -> Array:

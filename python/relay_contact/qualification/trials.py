@@ -267,11 +267,6 @@ def swept(
     return specimen.own(lengths), ahead, float(high * (low / high) ** (time[at + 1] / lasting))
 
 
-def swept_tried(specimen: Specimen, test: Sine, frequency: float, order: int) -> Tried:
-    """Return what tells what of the part fails in a slow sweep across a resonance (Hz), by factors of the level."""
-    return lambda factor: swept(specimen, test, frequency, factor, order)[:2]
-
-
 def sine_threshold(
     specimen: Specimen, test: Sine, frequency: float, guess: float, failing: Lengths | None = None
 ) -> tuple[float, list[str]]:
@@ -315,10 +310,15 @@ def sine_least(specimen: Specimen, test: Sine) -> Weakest:
         frequency, level = float(known[each]), least[1] * (1 - APART)
         if touches[each] < level and sine_tried(specimen, test, frequency)(level)[0]:
             least = sine_near(specimen, test, frequency, level)
+    return across(specimen, test, least, float(factors[at]))
+
+
+def across(specimen: Specimen, test: Sine, least: Weakest, guess: float) -> Weakest:
+    """Return where a slow sweep fails as a multiple of its frequency resonates, if below the least level so far."""
     natural, (low, high) = specimen.response.natural, test.band
     for multiple in ORDERS if high < natural and not test.steps else ():
         if low < natural / multiple < high / FALLS:
-            least = followed(specimen, test, natural / multiple, multiple, least, float(factors[at]))
+            least = followed(specimen, test, natural / multiple, multiple, least, guess)
     return least
 
 
