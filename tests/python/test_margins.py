@@ -1,5 +1,6 @@
 """Margins, their intervals and verdicts over relays drawn at random: by brute force, and without contradictions."""
 
+import re
 from bisect import bisect_left
 from dataclasses import replace
 from pathlib import Path
@@ -7,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.stats import binom
+from scipy.stats import binom, norm
 
 from component import COMPONENT, ROOT
 from qualified import CONTACTS, described, judged, placed
@@ -351,6 +352,34 @@ def test_draws_of_a_test_do_not_depend_on_others_beside_it() -> None:
     draws = 1 + 2 * len(position.relay.uncertainty) + positions.FEWEST
     assert len(both.surfaces["record"].values) > draws == len(alone.surfaces["shock"].values)
     assert np.array_equal(both.surfaces["shock"].values, alone.surfaces["shock"].values)
+
+
+def test_draws_that_fail_at_rest_leave_the_others_their_interval() -> None:
+    """A pusher closes the contact by 0.2 mm, known to 0.25 mm.
+
+    The logarithm of a margin falls without end towards where the contact opens at rest: no surface had followed it, and
+    the interval had ended 1.5 times too high.
+    """
+    values: Values = {
+        "effects.pusher": "Prescribed", "pusher.position": 9e-3, "pusher.displacement": 2.86e-4,
+        "contact.overtravel": -5e-4,
+    }  # fmt: skip
+    position = placed(described(values, {"contact.overtravel": Distribution(part=0.5)}), SHOCK)
+    found = judgement.judged(position, SHOCK, FEW)
+    scores = np.linspace(-2.5, 2.5, 41)
+
+    def margin(score: float) -> float:
+        responses = position.responses(position.drawn(np.array([score])))
+        return min(each.linear(responses[each.part], SHOCK) for each in position.parts)
+
+    exact = np.array([margin(score) for score in scores])
+    opens = norm.sf([scores[exact == 0].min(), scores[exact > 0].max()])
+    share = float(re.search(r"; ([\d.]+) % of the draws fail at rest", found.limits)[1]) / 100  # type: ignore[index]
+    # To the chance of 10,000 draws.
+    assert opens[0] - 0.01 < share < opens[1] + 0.01
+    assert found.margin.low == 0
+    assert found.margin.high == pytest.approx(np.interp(-1.96, scores, exact), rel=0.02)
+    assert all(len(each.surfaces[SHOCK.name].values) < 20 for each in position.parts)
 
 
 @pytest.mark.parametrize("seed", [1, 5, 6, 7, 8])

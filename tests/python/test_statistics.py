@@ -133,7 +133,7 @@ def test_a_surface_follows_margins_and_tells_its_error() -> None:
     def margin(at: Any) -> Any:  # noqa: ANN401
         return np.log(1.2 * (1 + 0.05 * at[:, 0]) * np.sqrt(1 + 0.03 * at[:, 1]) + 0.02 * at[:, 0] * at[:, 2])
 
-    surface, others = Surface(scores, margin(scores)), drawn(4)
+    surface, others = Surface(scores, margin(scores), np.ones(256)), drawn(4)
     left = surface(others) - margin(others)
     # Terms of third order: 0.05 times 0.02 / 1.2, in scores of 1.
     assert np.std(left) < 2 * 0.05 * 0.02 / 1.2

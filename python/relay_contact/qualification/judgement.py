@@ -491,6 +491,9 @@ def whole(position: Position, test: Test, levels: dict[str, Level], seen: Seen) 
         else:
             drawn[name] = parts[name].margins(test, each.factor, each.factor < BEYOND * level.factor)
     least = Drawn.least(list(drawn.values()))
+    if falls := np.mean(least.margins == 0):
+        told = f"{levels[first].limits}; {three(100 * falls)} % of the draws fail at rest"
+        levels[first] = replace(levels[first], limits=told)
     natural = position.specimen.response.natural
     kept = test.record.kept(natural) if isinstance(test, History) else 1.0
     known = kept * min(1.0, *(each.factor * each.sure / level.factor for each in levels.values()))

@@ -40,7 +40,7 @@ SETTLED = 1e-3
 GRID = np.linspace(-5.0, 5.0, 41)
 """Scores of the chance of the largest dip."""
 LOWEST = 1e-3
-"""Margin of a draw that fails at rest, whose logarithm would be endless."""
+"""Margin that a draw counts as at least, as the logarithm of one that fails at rest would be endless."""
 FAR = -9e-3
 """Overtravel (m) of a contact that is out of reach."""
 STILL = 1e-9
@@ -211,17 +211,24 @@ class Position:
             def margins(row: Array) -> list[list[float]]:
                 drawn = self.drawn(row)
                 responses = self.responses(drawn) if drawn != own else nominal
-                return [[each.linear(responses[each.part], test) for test in self.tests] for each in self.parts]
+                each = [(one, responses[one.part]) for one in self.parts]
+                return [[at.reserve, *(one.linear(at, test) for test in self.tests)] for one, at in each]
 
             draws = FEWEST
             while any(len(surfaces) < len(self.tests) for surfaces in known.values()):
                 scores = self.scores(draws)
-                # By part, test and draw.
+                # By part, what is left and test, and draw.
                 found = np.moveaxis(np.array(side_by_side(margins, list(scores))), 0, -1)
-                for surfaces, rows in zip(known.values(), found, strict=True):
+                rest = found[:, 0]
+                fails = (rest <= 0).any(axis=0)
+                # Where a part fails at rest nothing is known of the others; if none does, logarithms alone are smooth.
+                rest[(rest > 0) & fails] = np.nan
+                rest[:] = rest if fails.any() else 1.0
+                for surfaces, (left, *rows) in zip(known.values(), found, strict=True):
                     for test, values in zip(self.tests, rows, strict=True):
-                        each = statistics.Surface(scores, np.log(np.maximum(values, LOWEST)))
-                        if draws == DRAWS or each.error <= max(ROUGHLY, ENOUGH * float(np.std(each.values))):
+                        each = statistics.Surface(scores, np.log(np.maximum(values, LOWEST)), left)
+                        deviation = float(np.std(each.values[left > 0])) if (left > 0).any() else 0.0
+                        if draws == DRAWS or each.error <= max(ROUGHLY, ENOUGH * deviation):
                             surfaces.setdefault(test.name, each)
                 draws = min(4 * draws, DRAWS)
             self.shared.surfaces |= known

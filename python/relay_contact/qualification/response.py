@@ -217,7 +217,7 @@ def answers(
             return {CONTACT: transformed(reserves[CONTACT], natural, answer, 0.0)}
     if any(reserves[part.name] <= 0 for part in held):
         # Another relay, in which not all is held: it fails at rest.
-        return dict.fromkeys(reserves, transformed(0.0, natural, np.zeros(WATCHED), 0.0))
+        return {name: transformed(own, natural, np.zeros(WATCHED), 0.0) for name, own in reserves.items()}
     tolerance = EXACT
     if not rest.is_open:
         # Relative to the force of the contact; that of a stop may be a thousand times larger, and is rounded.

@@ -34,36 +34,61 @@ def distances(scores: Array, others: Array) -> Array:
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
 
 
+def followed(known: Array, values: Array, scores: Array) -> Array:
+    """Return columns of values, known in some rows of scores, for others: a polynomial and radial functions."""
+    count, columns = values.shape
+    if not count:
+        return np.zeros((len(scores), columns))
+    plane, *_ = np.linalg.lstsq(terms(known, count), values)
+    # Distances as radial functions, and a constant.
+    corner = np.ones((count, 1))
+    between = np.block([[distances(known, known), corner], [corner.T, np.zeros((1, 1))]])
+    *radial, constant = np.linalg.solve(between, np.vstack((values - terms(known, count) @ plane, np.zeros(columns))))
+    return np.asarray(terms(scores, count) @ plane + distances(scores, known) @ np.array(radial) + constant)
+
+
 @dataclass(frozen=True)
 class Surface:
-    """A quantity over the scores of parameters, by its values in some draws."""
+    """The logarithm of a margin over the scores of parameters, by its values in some draws.
+
+    It falls without end where less and less is left at rest. What is left goes evenly down to nothing, and what is more
+    than its logarithm goes evenly, too: both are followed.
+    """
 
     scores: Array
     values: Array
+    left: Array
+    """Force (N) or gap (m) at rest, by draws; of one that fails at rest none. NaN: not known. 1 if none fails."""
 
     def __call__(self, scores: Array) -> Array:
-        """Return it for other scores."""
+        """Return it for other scores; of those that fail at rest -inf."""
         if not self.scores.shape[1]:
             return np.full(len(scores), self.values[0])
-        count = len(self.scores)
-        plane, *_ = np.linalg.lstsq(terms(self.scores, count), self.values)
-        left = self.values - terms(self.scores, count) @ plane
-        # Distances as radial functions, and a constant.
-        corner = np.ones((count, 1))
-        between = np.block([[distances(self.scores, self.scores), corner], [corner.T, np.zeros((1, 1))]])
-        *radial, constant = np.linalg.solve(between, np.append(left, 0.0))
-        return np.asarray(terms(scores, count) @ plane + distances(scores, self.scores) @ radial + constant)
+        over, left = self.apart(scores)
+        with np.errstate(divide="ignore"):
+            return np.asarray(over + np.log(np.maximum(left, 0.0)))
+
+    def apart(self, scores: Array) -> Array:
+        """Return for other scores what is more than the logarithm of what is left, and what is left."""
+        own = self.left > 0
+        known = np.column_stack((self.values[own] - np.log(self.left[own]), self.left[own]))
+        return followed(self.scores[own], known, scores).T
 
     @property
     def error(self) -> float:
-        """Return its standard error in draws that it does not know."""
-        if not self.scores.shape[1]:
+        """Return its standard error in draws that it does not know, that of what is left as a part of its mean."""
+        if not self.scores.shape[1] or not (self.left > 0).any():
             return 0.0
-        left = []
+        wrong, missed = [], []
         for fold in range(FOLDS):
             out = np.arange(len(self.scores)) % FOLDS == fold
-            left.append(Surface(self.scores[~out], self.values[~out])(self.scores[out]) - self.values[out])
-        return float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
+            own = self.left[out] > 0
+            over, left = Surface(self.scores[~out], self.values[~out], self.left[~out]).apart(self.scores[out])
+            wrong.append((over - self.values[out])[own] + np.log(self.left[out][own]))
+            missed.append(np.maximum(left, 0.0) - np.maximum(self.left[out], 0.0))
+        shape, left = (np.concatenate(each) for each in (wrong, missed))
+        mean = np.mean(self.left, where=self.left > 0)
+        return float(np.sqrt(np.mean(shape**2)) + np.sqrt(np.nanmean(left**2)) / mean)
 
 
 def drawn(count: int) -> Array:
