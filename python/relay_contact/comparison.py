@@ -14,7 +14,7 @@ import numpy as np
 from relay_contact import tables
 from relay_contact.component import Array
 from relay_contact.figures import BLUE, RED, three
-from relay_contact.files import RelayContactError, spare
+from relay_contact.files import RelayContactError, at_once, spare
 from relay_contact.scene import read_table
 from relay_contact.tables import TIMES, Units
 
@@ -169,7 +169,8 @@ def compare(
     if out:
         out.mkdir(parents=True, exist_ok=True)
         table = found.table
-        table.to_csv(paths[0], index=False, header=["by", "start [s]", "duration [s]"], float_format="%.9g")
+        with at_once(paths[0]) as part:
+            table.to_csv(part, index=False, header=["by", "start [s]", "duration [s]"], float_format="%.9g")
         draw(found, threshold, paths[1])
     return found
 
@@ -200,4 +201,5 @@ def draw(found: Comparison, threshold: float, path: Path) -> None:
     figure.legend(*durations.get_legend_handles_labels(), loc="outside upper center", ncols=2, frameon=False)
     shown = np.append(found.simulated.times, found.measured.times)
     course.set_xlim(1e3 * shown.min(), 1e3 * shown.max())
-    figure.savefig(path, dpi=130)
+    with at_once(path) as part:
+        figure.savefig(part, format="png", dpi=130)

@@ -4,7 +4,8 @@ import hashlib
 import os
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import get_ident
 from typing import Any
@@ -69,15 +70,24 @@ def digest(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()[:16]
 
 
-def write_at_once(path: Path, text: str) -> None:
-    """Write a file that is there as a whole or not at all, as others may look for it or write it now."""
+@contextmanager
+def at_once(path: str | Path) -> Iterator[Path]:
+    """Give the path to write at for a file that is there as a whole or not at all: others may read or write it now."""
+    path = Path(path)
     part = path.with_name(f"{path.name}.{os.getpid()}.{get_ident()}.part")
     try:
-        part.write_text(text, encoding="utf-8")
+        yield part
         part.replace(path)
     except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+    finally:
         part.unlink(missing_ok=True)
-        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def write_at_once(path: Path, text: str) -> None:
+    """Write a text as a whole or not at all."""
+    with at_once(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def spare(written: Iterable[Path], read: Iterable[Path]) -> None:

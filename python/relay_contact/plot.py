@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from relay_contact.component import Array, Unit, Value, units
 from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
-from relay_contact.files import RelayContactError, description_path
+from relay_contact.files import RelayContactError, at_once, description_path
 from relay_contact.scene import read_table
 
 COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
@@ -154,5 +154,6 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
     grid[-1, 0].set_xlim(scale * time[0], scale * time[-1])
     figure.align_ylabels()
     path = table.with_name(table.name.removesuffix(".csv") + ".png")
-    figure.savefig(path, dpi=130)
+    with at_once(path) as part:
+        figure.savefig(part, format="png", dpi=130)
     return path

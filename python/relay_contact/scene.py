@@ -17,7 +17,7 @@ from pydantic.alias_generators import to_camel
 from tqdm import tqdm
 
 from relay_contact.component import Array, Component, Contact, Value, nearest, units, warnings_kept
-from relay_contact.files import RelayContactError, named, scenes
+from relay_contact.files import RelayContactError, at_once, named, scenes
 from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
 from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, RATIOS, TIMES, Units
 from relay_contact.tables import read as read_columns
@@ -62,7 +62,8 @@ def input_table(path: Path) -> dict[str, Array]:
 
 def write_table(path: Path, names: str, rows: ArrayLike, digits: int = 12) -> None:
     """Write a CSV file with a line of names."""
-    np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt=f"%.{digits}g", encoding="utf-8")
+    with at_once(path) as part:
+        np.savetxt(part, rows, delimiter=",", header=names, comments="", fmt=f"%.{digits}g", encoding="utf-8")
 
 
 class Content(Table):

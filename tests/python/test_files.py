@@ -466,6 +466,17 @@ def test_a_disk_that_is_full_leaves_nothing_and_names_the_file(tmp_path: Path, m
     assert not list(tmp_path.iterdir())
 
 
+def test_a_table_for_which_the_disk_is_full_is_not_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, *_: object, **__: object) -> None:
+        Path(path).write_text("time,contact.fo")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(np, "savetxt", full)
+    with pytest.raises(OSError, match=r"No space left on device: .*run.csv"):
+        run("at-rest", component=COMPONENT).write(tmp_path / "run.csv")
+    assert not list(tmp_path.iterdir())
+
+
 def test_what_was_read_is_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A scene beside a table of its name; a relay's file in the folder that is written; a log as the comparison."""
     scene, course = tmp_path / "road.toml", tmp_path / "road.csv"

@@ -10,6 +10,7 @@ import tomlkit
 from tomlkit.container import OutOfOrderTableProxy
 from tomlkit.items import InlineTable
 
+from relay_contact.files import write_at_once
 from relay_contact.identification.result import Identification, has
 from relay_contact.schema import leaves
 from relay_contact.spring import PREFIX, SPRING_FILES, text_of
@@ -108,5 +109,5 @@ def write(folder: Path, result: Identification) -> None:
     """Write both files."""
     name, spring = spring_text(result)
     if name:
-        (folder / name).write_text(spring, encoding="utf-8")
-    (folder / f"{result.path.stem}.toml").write_text(text(result, name, folder), encoding="utf-8")
+        write_at_once(folder / name, spring)
+    write_at_once(folder / f"{result.path.stem}.toml", text(result, name, folder))

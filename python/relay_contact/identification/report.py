@@ -12,7 +12,7 @@ from matplotlib.ticker import NullFormatter
 from relay_contact import pages
 from relay_contact.component import SIGNS, Array, Component, Unit, units
 from relay_contact.figures import BLACK, BLUE, GREY, RED
-from relay_contact.files import write_at_once
+from relay_contact.files import at_once, write_at_once
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
 from relay_contact.identification.measurement import BOUNCE, COLUMNS, FORCE, FREQUENCY, RELATIVE, RINGDOWN
@@ -137,7 +137,8 @@ def write(folder: Path, result: Identification, component: Component) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with mpl.rc_context(pages.STYLE):
         figure = draw(result)
-        figure.savefig(folder / FILES[1], dpi=130)
+        with at_once(folder / FILES[1]) as part:
+            figure.savefig(part, format="png", dpi=130)
         page = pages.render(
             "identification.html", title=f"{result.relay.title}, identified", found=(HEAD, cells(component, result)),
             remarks=silent(result), figure=pages.svg(figure), component=component.description.guid,
@@ -145,7 +146,7 @@ def write(folder: Path, result: Identification, component: Component) -> None:
             correlations=matrix(result) if len(result.found) > 1 else None,
         )  # fmt: skip
     write_at_once(folder / FILES[0], page)
-    with (folder / FILES[2]).open("w", newline="", encoding="utf-8") as file:
+    with at_once(folder / FILES[2]) as part, part.open("w", newline="", encoding="utf-8") as file:
         lines_ = csv.writer(file, lineterminator="\n")
         lines_.writerow(["parameter", "in the file (SI)", "identified (SI)", "low", "high"])
         for each in result.found:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args
 from pydantic import TypeAdapter
 from pydantic.dataclasses import dataclass
 
+from relay_contact.files import at_once
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, OPEN, PUSHER, STOP
 from relay_contact.qualification.relay import NORMAL, Relay
 from relay_contact.qualification.standards import Standard
@@ -249,7 +250,8 @@ class Assessment:
         for name, table in (("qualification.csv", self.table), ("sweeps.csv", self.sweeps)):
             units = table.attrs["units"]
             head = [f"{column} [{units[column]}]" if column in units else column for column in table.columns]
-            table.to_csv(self.folder / name, header=head, index=False, float_format="%.9g", lineterminator="\n")
+            with at_once(self.folder / name) as part:
+                table.to_csv(part, header=head, index=False, float_format="%.9g", lineterminator="\n")
 
     def _repr_html_(self) -> str:
         """Return the page for a notebook, apart from the notebook's own style."""
