@@ -418,11 +418,14 @@ def test_a_cluster_gives_the_same_bytes(two_models: Path, whole: Path, tmp_path:
         assert path.read_bytes() == (whole / "parts" / path.name).read_bytes()
 
 
-def test_too_little_damping_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_little_damping_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(response, "LONGEST", 5000)
-    undamped: Any = {"beam.stiffnessDamping": 0.0, "contact.damping": 0.0}
-    with pytest.raises(RelayContactError, match=r"still vibrates 0.05 s after a blow: too little damping"):
-        respond(COMPONENT, undamped, 600.0)
+    relay = tmp_path / "relay.toml"
+    relay.write_text("parameters = {beam.stiffnessDamping = 0.0, contact.damping = 1e-9}\n")
+    told = "shock, 213 A, position 1: the contact still vibrates 0.05 s after a blow: too little damping, by "
+    told += "beam.stiffnessDamping = 0, beam.massDamping = 0, contact.damping = 1e-09, or that of modes"
+    with pytest.raises(RelayContactError, match=told):
+        qualify(relay, "MIL-PRF-28776", out=tmp_path, tests="213 A", component=COMPONENT)
 
 
 def test_false_makes_of_an_open_contact_like_the_exact_beam(tmp_path: Path) -> None:

@@ -158,9 +158,7 @@ def here(
 
     def run(group: list[Job]) -> None:
         for path, position, test, points in group:
-            several = f", {position.model.name}" if len(position.relay.models) > 1 else ""
-            along = "" if position.axis == NORMAL else f", {position.axis} axis"
-            tell(f"{test.name}, {position.name}{along}{several}")
+            tell(position.named(test))
             keep(path, text_of(tested(position, test, points)))
 
     # The matrices of a test are small: threads of their own would wait for each other.

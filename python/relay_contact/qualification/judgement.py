@@ -8,6 +8,7 @@ import numpy as np
 from relay_contact.component import Array, warnings_kept
 from relay_contact.figures import GRAVITY as G
 from relay_contact.figures import three
+from relay_contact.files import RelayContactError
 from relay_contact.qualification import synthesis
 from relay_contact.qualification.distributions import LIMITS
 from relay_contact.qualification.excitation import (  # fmt: skip
@@ -401,7 +402,10 @@ def density(sampled: Array, frequency: Array, spacing: float) -> list[float]:
 def tested(position: Position, test: Test, points: int) -> Finding:
     """Run a test in a position of the coil, by one of the models; with what the component warned of."""
     with warnings_kept() as warnings:
-        finding = judged(position, test, points)
+        try:
+            finding = judged(position, test, points)
+        except RelayContactError as error:
+            raise RelayContactError(f"{position.named(test)}: {error}") from error
     return replace(finding, warnings=list(warnings.values()))
 
 

@@ -98,6 +98,11 @@ class Position:
     part: str = CONTACT
     shared: Shared = field(default_factory=Shared, init=False, repr=False)
 
+    def named(self, test: Test) -> str:
+        """Return what a test is of, in words."""
+        several = f", {self.model.name}" if len(self.relay.models) > 1 else ""
+        return f"{test.name}, {self.name}{'' if self.axis == NORMAL else f', {self.axis} axis'}{several}"
+
     @cached_property
     def values(self) -> Values:
         """Parameters of the component."""

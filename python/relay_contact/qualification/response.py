@@ -274,7 +274,10 @@ def answered(
     while True:
         count = len(found[CONTACT])
         if count >= LONGEST:
-            raise RelayContactError(f"the contact still vibrates {STEP * LONGEST:g} s after a blow: too little damping")
+            dampings = "beam.stiffnessDamping", "beam.massDamping", *("contact.damping",) * (not rest.is_open)
+            by = ", ".join(f"{name} = {contact.get(name):g}" for name in dampings)
+            text = f"too little damping, by {by}, or that of modes in a spring file"
+            raise RelayContactError(f"the contact still vibrates {STEP * LONGEST:g} s after a blow: {text}")
         watched = contact.drive(time + STEP * count, {"base.acceleration": pulse}, names)
         new = {part.name: (part.force(watched) - before[part.name]) / size for part in every}
         found = {name: np.concatenate((answer, new[name])) for name, answer in found.items()}
