@@ -401,6 +401,8 @@ def test_a_dwell_at_resonance_and_steps_have_the_margins_of_the_sweep() -> None:
         ({"steps": (100.0,)}, "either frequencies or steps"),
         ({"sweep_rate": 1.0}, "one of sweep_time and sweep_rate"),
         ({"acceleration": None}, "acceleration or double_amplitude: missing"),
+        ({"double_amplitude": 1.5}, "allowed is 0.5 m or less; is it meant in mm?"),
+        ({"acceleration": None, "double_amplitude": 0.5}, r"9.06e\+06 g at 3000 Hz: not allowed, allowed are 100000 g"),
         ({"evidence": {"duration": "from memory"}}, "evidence.duration: not an entry of this test"),
     ],
 )

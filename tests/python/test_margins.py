@@ -94,7 +94,7 @@ def test_the_interval_of_a_sine_is_that_of_brute_force(seed: int, beside: float)
     relay = drawn(seed, 0.1)
     (values,) = relay.positions.values()
     natural = respond(COMPONENT, values, CONTACTS.threshold).natural
-    test = replace(SINE, frequencies=(natural / 1.5, natural / beside), double_amplitude=1.0)
+    test = replace(SINE, frequencies=(natural / 1.5, natural / beside), double_amplitude=0.5)
     several(relay, test, 60)
 
 

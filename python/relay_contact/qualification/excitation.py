@@ -43,9 +43,20 @@ IDLE = ("sweep_time", "sweep_rate", "velocity_change")
 """Numbers that no verdict depends on."""
 
 Frequency = Annotated[float, within(*BAND)]
-Level = Annotated[float, Field(strict=True, gt=0, le=1e5)]
-"""Acceleration (g), up to the largest that the component allows."""
-Stroke = Annotated[float, Field(strict=True, gt=0, le=10)]
+LARGEST = 1e5
+"""Acceleration (g) that the component allows."""
+Level = Annotated[float, Field(strict=True, gt=0, le=LARGEST)]
+WIDEST = 0.5  # m, of shakers for earthquakes
+
+
+def possible(stroke: float) -> float:
+    """Refuse a double amplitude (m) that no shaker has."""
+    if stroke > WIDEST:
+        raise ValueError(f"allowed is {WIDEST:g} m or less; is it meant in mm?")
+    return stroke
+
+
+Stroke = Annotated[float, Field(strict=True, gt=0), AfterValidator(possible)]
 
 
 def rising(frequencies: tuple[float, ...]) -> tuple[float, ...]:
@@ -210,6 +221,10 @@ class Sine(Test):
         timed = (self.sweep_time is not None) + (self.sweep_rate is not None)
         if timed != (self.frequencies is not None and not self.dwell):
             raise ValueError("a sweep over frequencies has one of sweep_time and sweep_rate, dwell and steps have none")
+        high = self.band[1]
+        if (level := float(self.amplitude(np.array(high))) / G) > LARGEST:
+            text = f"double_amplitude: {level:.3g} g at {high:g} Hz: not allowed, allowed are {LARGEST:g} g or less"
+            raise ValueError(text)
         return self
 
     def amplitude(self, frequency: Array) -> Array:
