@@ -111,7 +111,9 @@ def read_toml(path: Path) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         text, _, place = str(error).removesuffix(")").rpartition(" (at ")
         line = re.match(r"line (\d+)", place)
-        at = line[1] if line else path.read_text(encoding="utf-8-sig").count("\n") + 1
+        lines = path.read_text(encoding="utf-8-sig").split("\n")
+        at = int(line[1]) if line else len(lines)
+        text += "; decimals have a point" if re.search(r"=\s*[+-]?\d+,\d", lines[at - 1]) else ""
         raise RelayContactError(f"{path}:{at}: not TOML: {text}") from error
     except UnicodeDecodeError as error:
         at = error.object.count(b"\n", 0, error.start) + 1

@@ -26,6 +26,7 @@ COARSE = 4
 """Steps in a period below which a record may lack what shakes a resonance: the filter of a recorder passes up to two
 fifths of its rate, and the resonance has a width. Straight lines leave 81 % there."""
 ATTENUATED = 0.01  # part of a vibration, from which on it is told that straight lines take it off
+SHORTEST = 1e-6  # s, of steps between samples of an acceleration
 FEWEST = 9  # values: two periods of what is sampled four times in each
 NAMED = 5  # channels that are named, of those that are not tested
 LOOKED = 200  # lines of a text in which the names of its columns are sought
@@ -54,6 +55,8 @@ class Record:
         steps = np.diff(self.time)
         usual = float(np.median(steps))
         told = [] if self.clock else ["time without a unit, taken as s"]
+        if usual < SHORTEST:
+            told.append(f"steps of time of {three(1e6 * usual)} µs: is it in s?")
         if self.time[0]:
             told.append(f"time begins at {self.time[0]:.9g} s, which is kept")
         if np.abs(steps - usual).max() > EQUAL * usual:
@@ -141,7 +144,9 @@ def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> 
     values = np.asarray(given, dtype=float) * factor
     if time is None or len(time) == 0:
         if rate is None:
-            raise RelayContactError(f"{where}: no time; give the rate, in samples a second")
+            raise RelayContactError(
+                f"{where}: no time, a column named {' or '.join(TIME)}; give the rate, in samples a second"
+            )
         time, clock = np.arange(len(values)) / rate, "s"
     elif rate is not None:
         raise RelayContactError(f"{where}: a rate is given, and the file has a time")
@@ -179,7 +184,11 @@ def text(path: Path) -> Iterator[Channel]:
     if not known:
         raise RelayContactError(f"{path}: no line with the names of the columns, such as: time [s],acceleration [g]")
     table = tables.read(path, known)
+    if not table.rows:
+        raise table.wrong("no row below the names of the columns")
     there = [name for name in table.units if name in TIME]
+    if there:
+        table.ascending(there[0])
     time, clock = (table[there[0]], table.units[there[0]] and "s") if there else (None, "s")
     for name, unit in table.units.items():
         if name not in TIME:

@@ -65,8 +65,10 @@ def message(path: Path, model: Any, error: Any) -> tuple[int, str]:  # noqa: ANN
             what = f"{dotted(place)}: no such entry, allowed are {', '.join(known)}{nearest(str(place[-1]), known)}"
         case "missing":
             what = f"{dotted(place)}: missing"
-        case _:
+        case kind:
             what = f"{dotted(place)} = {shown(error['input'])}: not allowed, {allowed(error)}"
+            if kind == "list_type" and len(place) == 1 and isinstance(error["input"], dict):
+                what += f", each of its entries under [[{dotted(place)}]]"
     at = line(path, place)
     return at, f"{path}:{at}: {what}"
 

@@ -42,7 +42,7 @@ def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> Non
 def test_text_without_time_has_a_rate(tmp_path: Path) -> None:
     path = tmp_path / "bare.csv"
     path.write_text("acceleration [g]\n" + "\n".join(map(str, VALUES)))
-    with pytest.raises(RelayContactError, match=r"no time; give the rate"):
+    with pytest.raises(RelayContactError, match=r"no time, a column named time or t; give the rate"):
         read(path)
     (record,) = read(path, rate=50e3)
     assert record.time == pytest.approx(TIME - 12.5, abs=1e-12)
@@ -64,10 +64,18 @@ def test_unequal_steps_are_told_and_times_have_to_rise(tmp_path: Path) -> None:
     (record,) = read(path)
     assert [note for note in record.notes if "unequal, 1000 to 2000 µs" in note]
     assert record.time[:4] == pytest.approx([0, 1e-3, 3e-3, 4e-3])
+    short = tmp_path / "short.csv"
+    short.write_text("time [us],a [g]\n" + "\n".join(f"{0.1 * n},{n % 2}" for n in range(20)))
+    assert read(short)[0].notes == ["steps of time of 0.100 µs: is it in s?"]
+    short.write_text("time [s],a [g]\n")
+    with pytest.raises(RelayContactError, match=r"short.csv:1: no row below the names of the columns"):
+        read(short)
     # Straight lines take off what they do in the longest step.
     assert record.kept(100.0) == pytest.approx(np.sinc(0.2) ** 2)
     path.write_text("time [ms],a [g]\n0,0\n1,1\n1,2\n" + MORE)
-    with pytest.raises(RelayContactError, match=r"value 3: .* allowed is more than the time before"):
+    with pytest.raises(
+        RelayContactError, match=r"steps.csv:4: column time: 1 ms: not allowed, allowed is more than in the row"
+    ):
         read(path)
 
 
@@ -98,7 +106,7 @@ def test_a_record_is_the_same_in_quotes_and_one_wrong_row_is_named(tmp_path: Pat
         path.write_text(f"some\n\n{names}\n{rows}\n")
         (named,) = read(path)
         assert np.array_equal(named.acceleration, plain.acceleration)
-    path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n5;x\n")
+    path.write_text(f"some\n\ntime;a\ns;g\n{rows}\n50;x\n")
     with pytest.raises(RelayContactError, match=r"long.csv:405: column a: x: not allowed, allowed is a number"):
         read(path)
 
