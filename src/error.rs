@@ -112,7 +112,7 @@ pub enum Remark {
         100.0 * damping
     )]
     Damped { spring: &'static str, damping: f64 },
-    /// A material that may be meant in another unit.
+    /// A value that may be meant in another unit.
     #[error(
         "{name} = {} {unit}: usual is {} to {}; is it meant in another unit?",
         number(*value), number(*usual.start()), number(*usual.end())

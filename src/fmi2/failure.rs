@@ -10,8 +10,8 @@ pub(super) enum Failure {
     CallOrder { function: Function, state: State },
     #[error("argument {0} is null, misaligned or too long")]
     Pointer(&'static str),
-    #[error("value reference {reference}{}: no {kind} variable", owner.map(|name| format!(" ({name})")).unwrap_or_default())]
-    UnknownReference { kind: &'static str, reference: u32, owner: Option<&'static str> },
+    #[error("value reference {reference}: no {kind} variable{}", owner.map(|(name, own)| format!(", {name} is {own}")).unwrap_or_default())]
+    UnknownReference { kind: &'static str, reference: u32, owner: Option<(&'static str, &'static str)> },
     #[error("{name}: cannot be set in the state {}; {reason}", state.name())]
     NotSettable { name: &'static str, state: State, reason: &'static str },
     #[error("{name}: has no value in the state {}; outputs can be read from Initialization Mode on", state.name())]

@@ -69,7 +69,7 @@ fn a_variable_of_another_type_or_state_is_named_with_the_reason() {
     let fmu = Instance::initialized();
     let reference = vr("solver.modes").to_string();
     let of_other_type = fmu.try_real("solver.modes").0;
-    fmu.answers(of_other_type, fmi2Error, &["fmi2GetReal", "solver.modes", &reference]);
+    fmu.answers(of_other_type, fmi2Error, &["fmi2GetReal", "no Real", "solver.modes is Integer", &reference]);
     let fmu = Instance::new();
     let parts = ["fmi2GetReal", "contact.force", "instantiated"];
     fmu.answers(fmu.try_real("contact.force").0, fmi2Error, &parts);

@@ -81,6 +81,24 @@ fn a_material_that_may_be_in_another_unit_is_told() {
     assert!(!told(8250.0, None) && told(8.25, None) && told(8250.0, Some(8.25)));
 }
 
+/// Of 3 mm, typed as a number of mm, a contact was a hundred times stiffer without a word.
+#[test]
+fn sizes_that_may_be_in_another_unit_are_told() {
+    let told = |radius: f64, mass: f64, damping: f64| {
+        let mut scene = Scene::default();
+        (scene.contact.curvature_radius, scene.tip.mass, scene.contact.damping) = (radius, mass, damping);
+        let remarks = Model::new(&scene, 0.0).unwrap().remarks();
+        remarks.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(told(3e-3, 2e-5, 8e-5), "");
+    assert_eq!(
+        told(3.0, 2e-5, 8e-5),
+        "contact.curvatureRadius = 3 m: usual is 5e-5 to 0.2; is it meant in another unit?"
+    );
+    assert_eq!(told(3e-3, 0.02, 8e-5), "tip.mass = 0.02 kg: usual is 0 to 0.005; is it meant in another unit?");
+    assert_eq!(told(3e-3, 2e-5, 0.08), "contact.damping = 0.08 s: usual is 0 to 0.005; is it meant in another unit?");
+}
+
 #[test]
 fn damping_that_may_be_in_per_cent_or_another_unit_is_told() {
     for (damping, told) in [(8.063e-5, false), (8.063e-4, true)] {

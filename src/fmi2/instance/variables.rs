@@ -85,12 +85,7 @@ impl Instance {
     /// The variable of this type; all numbers of the plain component are Reals.
     fn typed(&self, kind: &'static str, reference: u32) -> Result<&'static Variable, Failure> {
         let variable = find(kind, reference)?;
-        let own = match variable.group {
-            Group::RealInput(_) | Group::RealParameter(_) | Group::RealOutput(_) => "Real",
-            Group::IntegerParameter(_) | Group::EnumerationParameter(_) | Group::IntegerOutput(_) => "Integer",
-            Group::BooleanParameter(_) | Group::BooleanOutput(_) => "Boolean",
-            Group::StringParameter(_) => "String",
-        };
+        let own = own_type(variable);
         let fits = own == kind || self.plain && kind == "Real" && own != "String";
         fits.then_some(variable).ok_or_else(|| wrong_type(kind, variable))
     }
@@ -180,5 +175,16 @@ fn no_derivative(variable: &Variable, role: &'static str) -> Failure {
 }
 
 fn wrong_type(kind: &'static str, variable: &Variable) -> Failure {
-    Failure::UnknownReference { kind, reference: variable.value_reference, owner: Some(variable.name) }
+    let owner = Some((variable.name, own_type(variable)));
+    Failure::UnknownReference { kind, reference: variable.value_reference, owner }
+}
+
+/// The type by whose functions a variable is read and set.
+fn own_type(variable: &Variable) -> &'static str {
+    match variable.group {
+        Group::RealInput(_) | Group::RealParameter(_) | Group::RealOutput(_) => "Real",
+        Group::IntegerParameter(_) | Group::EnumerationParameter(_) | Group::IntegerOutput(_) => "Integer",
+        Group::BooleanParameter(_) | Group::BooleanOutput(_) => "Boolean",
+        Group::StringParameter(_) => "String",
+    }
 }
