@@ -58,7 +58,8 @@ def read(path: Path, model: type[Model]) -> Model:
 
 def message(path: Path, model: Any, error: Any) -> tuple[int, str]:  # noqa: ANN401
     """Return the line of an error that pydantic found, and the error in words."""
-    place = error["loc"]
+    # Without the names of the types of which it may have one.
+    place = tuple(each for each in error["loc"] if "[" not in str(each))
     match error["type"]:
         case "extra_forbidden" | "unexpected_keyword_argument":
             known = entries(model, place[:-1])

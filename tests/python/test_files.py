@@ -296,6 +296,7 @@ def test_errors_in_a_relay_file_have_their_line(tmp_path: Path, text: str, messa
         ),
         ("opening = 10e-6", "opening = 7e-3", "21: shock.1.duration = 0.006: not allowed, .*longest opening"),
         ("acceleration = 50.98581", "acceleration = '100 g'", '20: shock.1.acceleration = "100 g": not allowed'),
+        ("rms = 2.83", "evidence = 'read'\nrms = 2.83", "14: random.1.evidence = \"read\": not allowed, .*'measured'"),
         ("rms = 2.83", "rms = 27.8", "14: random.1.rms = 27.8: not allowed, the density has 2.8.. g rms"),
         ("[10.0, 0.20797], [55.0", "[55.0, 0.20797], [10.0", "13: random.1.density = .*frequencies have to rise"),
         ("[10.0, 0.20797]", "[10.0, 0.0]", "13: random.1.density.1.2 = 0.0: not allowed, allowed is greater than 0"),

@@ -298,6 +298,10 @@ def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
     bar, point, *_ = plots.margins([paper["vibration (sine)"]]).axes[0].lines
     assert np.array(bar.get_xdata()).tolist() == [sine.low, sine.high]
     assert np.array(point.get_xdata()).tolist() == [sine.margin]
+    # A level in other units: its margin is far off the others, and still on a scale with numbers.
+    first = replace(paper["vibration (sine)"].first, judged=replace(sine, margin=0.005, low=0.004))
+    far = plots.margins([replace(paper["vibration (sine)"], models=[first])]).axes[0]
+    assert [label.get_text() for label in far.get_xticklabels()][:3] == ["0.005", "0.01", "0.02"]
 
 
 def test_no_legend_of_a_figure_is_cut_off(paper: Assessment) -> None:
@@ -584,7 +588,7 @@ clause = ""
 evidence = "measured"
 [[random]]
 name = "noise"
-density = [[20, "6 dB/octave"], [40, 1], [80, 1.0], [160, "-6 dB/octave"]]
+density = [[20, "6 dB/oct"], [40, 1], [80, 1.0], [160, "-6 dB/octave"]]
 rms = 9.8
 duration = 60
 clause = ""

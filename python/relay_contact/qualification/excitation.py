@@ -32,7 +32,7 @@ PERIODS = 10
 """Of the lowest frequency in random vibration, at least: Rice's rate of crossings is one of many."""
 ROUNDED = 0.05
 """Largest part by which a printed rms or velocity of two digits differs from the exact one."""
-SLOPE = re.compile(r"([+-]?\d+(?:\.\d+)?) dB/octave")
+SLOPE = re.compile(r"([+-]?\d+(?:\.\d+)?) ?dB/oct(?:ave)?")
 STEP = 1e-5  # s, of courses where they are sampled
 
 Evidence = Literal["measured", "read in the standard", "read in a quotation", "from memory"]

@@ -155,8 +155,9 @@ def margins(tests: list[Tested]) -> Figure:
     axes.set_ylim(len(judged) - 0.4, -0.6)
     axes.axvline(1.0, color=GREY, linewidth=1)
     low, high = axes.get_xlim()
-    axes.set_xlim(min(low, 0.5), max(high, 2.0))
-    ticks = [tick for tick in (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50) if axes.get_xlim()[0] < tick < axes.get_xlim()[1]]
+    low, high = axes.set_xlim(min(low, 0.5), max(high, 2.0))
+    digits = (1, 2, 5) if high < 1e3 * low else (1,)
+    ticks = [tick for power in range(-3, 4) for digit in digits if low < (tick := digit * 10.0**power) < high]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
     return figure
