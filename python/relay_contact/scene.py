@@ -28,6 +28,7 @@ PASSED = 0.01
 """Part of the range of an input by which it may pass a row of its table."""
 LONG = 100
 """Times the stop, from which on a table may have its time in another unit."""
+WIDE = 0.02  # m, from which on it may have a displacement in one
 INPUTS: Units = {
     "time": TIMES, "base.acceleration": ACCELERATIONS, "support.displacement": LENGTHS, "second.displacement": LENGTHS,
     "pusher.displacement": LENGTHS, "coil.relativeCurrent": RATIOS,
@@ -109,6 +110,8 @@ class Scene:
         source = path.parent / file if file else None
         table = {}
         if source:
+            if not source.is_file():
+                raise refused(path, ("inputs", "file"), file, "no such file beside this one")
             with at(path, "inputs", "file"):
                 table = input_table(source)
         for name, keys, value in leaves(inputs):
@@ -159,6 +162,9 @@ class Scene:
             f"inputs end at {end:g} s, the run at {stop:g} s: their last values are held": stop - end > 1.01 * spacing,
             f"inputs end at {end:g} s, the run at {stop:g} s: is their time in s?": end > LONG * stop,
         }
+        for name, column in self.table.items():
+            if INPUTS.get(name) is LENGTHS:
+                told[f"inputs: {name} reaches {abs(column).max():g} m: is it in m?"] = abs(column).max() > WIDE
         return [text for text, true in told.items() if true]
 
     def missed(self, points: Array, inputs: Mapping[str, Array]) -> list[str]:

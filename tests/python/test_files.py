@@ -373,6 +373,7 @@ SCENE = 'title = "own"\nstop = 1e-3\ncommunicationStep = 1e-5\noutputs = ["conta
             "6: inputs.support.displacement = 0.0",
         ),
         (SCENE + "[inputs]\nfile = 3\n", "6: inputs.file = 3: not allowed"),
+        (SCENE + "[inputs]\nfile = 'none.csv'\n", '6: inputs.file = "none.csv": not allowed, no such file beside this'),
         (SCENE + "[inputs]\ntip.mass = 1e-5\n", "6: tip.mass: not an input"),
         (SCENE + "[parameters]\nbase.acceleration = 9.0\n", "6: base.acceleration: not a parameter"),
         (SCENE + "[parameters]\nbeam.length = '15 mm'\n", '6: beam.length = "15 mm": not allowed'),

@@ -176,6 +176,8 @@ def test_a_scene_takes_ones_own_measured_acceleration(tmp_path: Path) -> None:
 def test_a_run_warns_of_inputs_that_do_not_cover_it(rows: list[float], told: list[str]) -> None:
     table = {"time": 1e-3 * np.array(rows), "base.acceleration": np.zeros(len(rows))}
     scene = Scene("", 5e-3, 1e-5, ["contact.force"], {}, table)
+    far = Scene("", 5e-3, 1e-5, [], {}, table | {"support.displacement": np.full(len(rows), -0.05)})
+    assert far.uncovered() == [*told, "inputs: support.displacement reaches 0.05 m: is it in m?"]
     assert run(scene, component=COMPONENT).warnings == told
     many = run_many([scene, (scene, {"base.acceleration": 0.0})], component=COMPONENT)
     assert many["warning"].tolist() == [" ".join(told), ""]
