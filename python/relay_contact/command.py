@@ -147,9 +147,7 @@ def qualify_relay(given: argparse.Namespace) -> None:
     from relay_contact.qualification.page import FILES, PDF, UNKNOWN
     from relay_contact.qualification.words import HEAD, MARKS, UNREAD, rows
 
-    if not (given.standard or given.history):
-        raise RelayContactError("--standard, --history: one of them is needed, the tests of a standard or a record")
-    asked = Path(given.standard).stem if given.standard else Path(given.history[0]).stem
+    asked = Path(given.standard or (*given.history, "")[0]).stem
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{asked}")
     # What was imported stays: garbage is sought in the rest.
     gc.freeze()

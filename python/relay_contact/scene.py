@@ -244,7 +244,7 @@ class Result(np.ndarray[tuple[int], np.dtype[np.void]]):
 def run(
     scene: Scene | str | Path,
     *,
-    outputs: list[str] | None = None,
+    outputs: str | list[str] | None = None,
     inputs: Mapping[str, ArrayLike] | None = None,
     stop: float | None = None,
     step: float | None = None,
@@ -265,6 +265,7 @@ def run(
     course = scene.table if inputs is None else courses(component, inputs)
     if twice := course.keys() & {component.settable(name) for name in changes}:
         raise RelayContactError(f"{', '.join(sorted(twice))}: given twice, as a constant and among the inputs")
+    outputs = [outputs] if isinstance(outputs, str) else outputs
     names = list(dict.fromkeys(map(component.name, scene.outputs if outputs is None else outputs)))
     stop, step = scene.stop if stop is None else stop, scene.step if step is None else step
     scene = replace(scene, outputs=names, table=course, stop=stop, step=step)

@@ -34,6 +34,7 @@ def test_a_run_has_names_and_units() -> None:
     assert result.dtype.names == ("time", "contact.force", "chatter.count")
     assert result.units == {"time": "s", "contact.force": "N", "chatter.count": ""}
     assert np.array_equal(result["time"], np.arange(101) * 1e-5)
+    assert run("at-rest", component=COMPONENT, outputs="contact.force").dtype.names == ("time", "contact.force")
     # Rows keep their names and units.
     assert result[10:20].units == result.units
     assert result[10:20]["contact.force"][0] == result["contact.force"][10]

@@ -572,6 +572,8 @@ def test_a_test_that_no_standard_has_is_refused(tmp_path: Path, capsys: pytest.C
         qualify("paper", "MIL-STD-202", tests="none", out=tmp_path, component=COMPONENT)
     assert main(["qualify", "paper", "--history", "record.csv", "--test", "204"]) == 1
     assert "tests 204: not allowed without a standard" in capsys.readouterr().err
+    with pytest.raises(RelayContactError, match=r"standard, history: one of them is needed"):
+        qualify("paper", out=tmp_path, component=COMPONENT)
     for option in (["--unit", "g"], ["--rate", "1000"]):
         assert main(["qualify", "paper", "--standard", "MIL-STD-202", *option, *wanted[-2:]]) == 1
         assert "unit, rate: not allowed without a record" in capsys.readouterr().err

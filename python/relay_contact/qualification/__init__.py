@@ -48,6 +48,8 @@ def qualify(
     from relay_contact.qualification.page import FILES, write
 
     tests = [tests] if isinstance(tests, str) else tests
+    if not (standard or history):
+        raise RelayContactError("standard, history: one of them is needed, the tests of a standard or a record")
     if tests and not standard:
         raise RelayContactError(f"tests {', '.join(tests)}: not allowed without a standard, whose tests they are")
     if (unit or rate) and not history:
