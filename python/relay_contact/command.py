@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from relay_contact.component import Component, Value, units
-from relay_contact.files import RelayContactError, fmu_path, page_path, read_toml, scenes, spare
+from relay_contact.files import RelayContactError, at_once, fmu_path, page_path, read_toml, scenes, spare
 from relay_contact.scene import Scene, run, write_table
 from relay_contact.spring import SPRING_FILES
 
@@ -137,7 +137,8 @@ def write_parameters(given: argparse.Namespace) -> None:
     given.out.mkdir(parents=True, exist_ok=True)
     for name in given.scene or scenes():
         path = given.out / f"{Path(name).stem}{'-plain' * given.plain}.ssv"
-        path.write_bytes(parameter_set(Path(name).stem, Scene.read(name, component), component, given.plain))
+        with at_once(path) as part:
+            part.write_bytes(parameter_set(Path(name).stem, Scene.read(name, component), component, given.plain))
         print(path)
 
 
