@@ -210,7 +210,7 @@ corePosition = 1e-4
         ("uncertainty.tip.mass = -0.1\n", "2: uncertainty.tip.mass = -0.1: not allowed, allowed is a part"),
         ("uncertainty.contact.force = 0.1\n", "2: contact.force: an output, which cannot be set"),
         ("uncertainty.base.acceleration = 0.1\n", "2: base.acceleration: not a parameter"),
-        ("uncertainty.effects.heating = 0.1\n", "2: uncertainty.effects.heating: not a real parameter"),
+        ("uncertainty.effects.heating = 0.1\n", "2: uncertainty.effects.heating: not a parameter of type Real"),
         # At the end of the interval the moving contact has left the range that the component allows.
         ("parameters.contact.overtravel = 9e-3\nuncertainty.contact.overtravel = 0.2\n", "3: contact.overtravel = 0.0"),
         ("parameters.excitation.amplitude = 9.0\n", "2: parameters.excitation.amplitude = 9.0: not allowed, the tests"),

@@ -111,7 +111,7 @@ def unknowns(
     # Each once, in whichever spelling.
     for name in dict.fromkeys(name if name.startswith(PREFIX) else component.settable(name) for name in names):
         if not name.startswith(PREFIX) and component.variables[name].type != "Real":
-            raise RelayContactError(f"{name}: not a real parameter, which cannot be identified")
+            raise RelayContactError(f"{name}: not a parameter of type Real, which cannot be identified")
         own = {place for place, table in zip(relay.positions, tables, strict=True) if has(table, name)}
         shared = [place for place in used if place not in own]
         groups = ([tuple(shared)] if shared else []) + [(place,) for place in used if place in own]

@@ -295,7 +295,7 @@ def uncertainties(
             elif name not in OF_THE_POSITION and (
                 component.variables[schema.exact(component, name, "parameter")].type != "Real"
             ):
-                raise RelayContactError(f"{schema.dotted(place)}: not a real parameter")
+                raise RelayContactError(f"{schema.dotted(place)}: not a parameter of type Real")
         if name in found:
             raise schema.refused(path, place, part, "given twice")
         try:
