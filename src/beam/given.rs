@@ -2,8 +2,8 @@
 //!
 //! What the modes lack of the static compliance `c` is a spring in series with the contact, `c - sum T_i^2 / omega_i^2`
 //! (residual flexibility: R. H. MacNeal, Computers & Structures 1 (1971) 581). It is one mode more, so fast that it follows
-//! at once: `T^2 / omega^2` is that flexibility, and what the beam's damping does not do about its ringing, critical damping
-//! does.
+//! at once: `T^2 / omega^2` is that flexibility. It gives way in the damping time `c / omega^2` of the highest mode. With a contact's
+//! damper in series its deflection is a state: steps are no longer than some fifty of the time after which the mode forgets that.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,9 +15,12 @@ use crate::math::roots;
 use crate::math::simd::LANES;
 use crate::scene::spring::{GivenMode, Modes};
 
-/// Frequency of the residual flexibility over the highest of the modes, 1: it lags by 2e-4 of a period at that frequency,
-/// where the modes that are missing make all the difference.
+/// Frequency of the residual flexibility over the highest of the modes, 1.
 const RESIDUAL: f64 = 1e4;
+
+/// Damping ratio of the highest mode that counts for the residual flexibility at least, 1: it then lags by 3e-3 of a period at that
+/// frequency, where the modes that are missing make all the difference.
+const DAMPED: f64 = 0.01;
 
 /// Share of the compliance below which a residual flexibility is what was not printed, 1.
 const ROUNDING: f64 = 1e-7;
@@ -85,17 +88,14 @@ impl Given {
         };
         let count = count.min(MAX_MODES).saturating_sub(self.residuals());
         let mut modes: Vec<_> = self.modes.iter().take(count).map(mode).collect();
-        let Some(highest) = modes.last().map(|mode| mode.omega_squared) else { return modes };
-        let omega_squared = RESIDUAL.powi(2) * highest;
-        // Where each mode has its own damping, that of the scene is not meant for this spring.
-        let own = self.modes.iter().all(|mode| mode.damping.is_some());
-        let beta = if own { 0.0 } else { beta };
+        let Some(&Mode { omega_squared, damping, .. }) = modes.last() else { return modes };
+        let damping = RESIDUAL.powi(2) * damping.max(2.0 * DAMPED * omega_squared.sqrt());
+        let omega_squared = RESIDUAL.powi(2) * omega_squared;
         let residual = |compliance: f64, held: f64| {
             let rest = compliance - held;
             (rest > ROUNDING * compliance).then(|| (rest * omega_squared).sqrt())
         };
-        let rest =
-            Mode { omega_squared, damping: beta * omega_squared + 2.0 * omega_squared.sqrt(), ..Mode::default() };
+        let rest = Mode { omega_squared, damping, ..Mode::default() };
         let tip = residual(self.compliance, modes.iter().map(Mode::compliance).sum());
         let held = modes.iter().map(|mode| mode.parallel.powi(2) / mode.omega_squared);
         let parallel = residual(self.parallel_compliance, held.sum());

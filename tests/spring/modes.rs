@@ -6,7 +6,7 @@ use relay_contact::reference::{Mode, Model, reduced_modulus};
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{GivenMode, Modes, Segment, Segments, Shape};
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ContactLawKind, RealOutput};
+use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 use testing::close;
 use testing::scenes::{course, forces, largest_difference, shaken, supported};
 use testing::springs::{mode, modes_of, of_modes, segment};
@@ -165,6 +165,24 @@ fn a_single_mode_with_its_residual_is_a_mass_between_two_springs() {
     let found = late.iter().map(|force| (force - middle).abs()).fold(0.0, f64::max);
     // A hundred points a third of a period apart miss the crest by less than 1e-3.
     assert!((found / amplitude - 1.0).abs() < 2e-3, "{found} {amplitude}");
+}
+
+/// In series with the contact's damper a residual compliance holds a force that changes slowly. Where it forgot that at once, damped
+/// critically, there were 85,000 steps.
+#[test]
+fn a_residual_compliance_takes_few_steps() {
+    let mut scene = shaken(98.0, 1000.0);
+    let mut fine = scene.clone();
+    fine.solver.modes = 64;
+    let all = modes_of(&Model::new(&fine, 0.0).unwrap()).modes;
+    let modes = all.iter().take(8).map(|own| GivenMode { parallel: None, damping: Some(0.02), ..*own });
+    let held: f64 = modes.clone().map(|mode| mode.contact.powi(2) / mode.omega_squared()).sum();
+    let [without, beside] = [1.0, 1.01].map(|share| {
+        scene = with(scene.clone(), of_modes(share * held, modes.clone()));
+        let (_, simulation) = course(&scene, 1e-4, 100, [RealOutput::ContactForce]);
+        simulation.integer(IntegerOutput::SolverSteps)
+    });
+    assert!(beside < 5 * without, "{beside} steps, {without} without a residual compliance");
 }
 
 #[test]
