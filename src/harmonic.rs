@@ -19,20 +19,11 @@ use nalgebra::Complex;
 
 use crate::model::Model;
 
-/// Complex amplitudes per base acceleration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
-    /// Contact force about the preload force, N per m/s2.
-    pub force: Complex<f64>,
-    /// Displacement of the tip relative to the base, m per m/s2: minus the indentation.
-    pub displacement: Complex<f64>,
-}
-
-/// Response of the model at the angular frequency `omega` (rad/s) to a base acceleration, with the contact held closed.
-/// If it is open at rest, the contact force is 0.
+/// The contact force about the preload force at the angular frequency `omega` (rad/s), N per m/s2, with the contact held closed. If it
+/// is open at rest, the contact force is 0.
 ///
 /// It is infinite or not a number at a resonance without damping.
-pub fn response(model: &Model, omega: f64) -> Response {
+pub fn response(model: &Model, omega: f64) -> Complex<f64> {
     let stiffness = model.preload.contact_stiffness;
     let contact = Complex::new(stiffness, omega * model.law.damping * stiffness);
     let zero = Complex::new(0.0, 0.0);
@@ -41,12 +32,11 @@ pub fn response(model: &Model, omega: f64) -> Response {
         let dynamic = 1.0 / Complex::new(mode.omega_squared - omega * omega, omega * mode.damping);
         (compliance + dynamic * mode.tip * mode.tip, shaken - dynamic * mode.tip * mode.participation)
     });
-    let displacement = shaken / (contact * compliance + 1.0);
-    Response { force: -contact * displacement, displacement }
+    -contact * shaken / (contact * compliance + 1.0)
 }
 
 /// Base acceleration (m/s2) whose linear response at the angular frequency `omega` (rad/s) has an amplitude of the
 /// contact force as large as the preload force: the contact is about to open.
 pub fn opening_threshold(model: &Model, omega: f64) -> f64 {
-    model.preload.force / response(model, omega).force.norm()
+    model.preload.force / response(model, omega).norm()
 }

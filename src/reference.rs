@@ -10,7 +10,7 @@ pub use crate::beam::statics::{Statics, axial_force_from_deflection};
 pub use crate::contact::law::{Branch, Law, Opening, reduced_modulus};
 pub use crate::electrical::ElectricalContact;
 pub use crate::excitation::generator::Generator;
-pub use crate::harmonic::{Response, opening_threshold, response};
+pub use crate::harmonic::{opening_threshold, response};
 pub use crate::math::legendre::gauss;
 pub use crate::math::roots::bracketed;
 pub use crate::model::Model;

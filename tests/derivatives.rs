@@ -6,7 +6,7 @@ use relay_contact::MODEL_DESCRIPTION;
 use relay_contact::inputs::Inputs;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
-use relay_contact::variables::{ExcitationKind, RealOutput};
+use relay_contact::variables::{ExcitationKind, RealOutput, ResistanceKind};
 use roxmltree::Document;
 use testing::near;
 use testing::scenes::{LAWS, accelerated, force_scale, propped_mass, shaken};
@@ -156,10 +156,11 @@ fn derivatives_of_outputs_are_the_slopes_of_their_courses() {
         RealOutput::ContactVoltage,
         RealOutput::ContactElasticForce,
     ];
-    for law in LAWS {
+    let [power, holm, barber] = [ResistanceKind::PowerLaw, ResistanceKind::Holm, ResistanceKind::Barber];
+    for (law, resistance) in LAWS.into_iter().zip([power, barber, holm, power]) {
         for (amplitude, size) in [(98.0, 1e-6), (98.0, 1e-5), (400.0, 1e-6), (400.0, 1e-5)] {
             let mut scene = shaken(amplitude, 1000.0);
-            scene.effects.contact_law = law;
+            (scene.effects.contact_law, scene.effects.resistance) = (law, resistance);
             // Steepest at no force, where the contact opens or closes between the three.
             let counts = |output, rows: &[Three]| {
                 output != RealOutput::ContactConductance || rows.last().unwrap().iter().all(|at| at[0].0 > 0.0)

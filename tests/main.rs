@@ -19,7 +19,6 @@ mod equilibrium;
 mod excitation;
 mod fixed_spring;
 mod fmi_api;
-mod frequency_domain;
 mod friction;
 mod imports;
 mod many;

@@ -145,8 +145,8 @@ const DAMPINGS: [(f64, f64, f64); 9] = [
     (0.0, 8.063e-5, 8.0631e-5),
 ];
 
-/// Of so many modes; 0: as many as the tolerance needs.
-pub fn damped(law: ContactLawKind, modes: i32, (alpha, beta, contact): (f64, f64, f64)) -> Scene {
+/// Of so many modes.
+fn damped(law: ContactLawKind, modes: i32, (alpha, beta, contact): (f64, f64, f64)) -> Scene {
     let mut scene = scene(law);
     scene.solver.modes = modes;
     scene.beam.mass_damping = alpha;

@@ -5,7 +5,7 @@
 
 mod forced_shock;
 mod hertz_impact;
-pub mod linear_scene;
+mod linear_scene;
 mod opening_threshold;
 mod restitution;
 mod shock;

@@ -11,8 +11,23 @@ use relay_contact::variables::ContactLawKind;
 use testing::rig::Rig;
 use testing::scenes::shaken;
 
-fn model(law: ContactLawKind, tolerance: f64, frequency: f64) -> Model {
+/// Frequencies (Hz), and damping of beam and contact: alpha (1/s), beta and beta_c (s).
+const CASES: [(f64, [f64; 3]); 9] = [
+    (250.0, SPECIMEN),
+    (700.0, SPECIMEN),
+    (1000.0, SPECIMEN),
+    (1300.0, SPECIMEN),
+    (2000.0, SPECIMEN),
+    (1354.5, [5125.0, 0.0, 0.0]),
+    (500.0, [2000.0, 4e-5, 4e-5]),
+    (2000.0, [0.0, 4e-5, 3e-4]),
+    (1000.0, [3000.0, 0.0, 8.063e-5]),
+];
+const SPECIMEN: [f64; 3] = [0.0, 8.063e-5, 8.063e-5];
+
+fn model(law: ContactLawKind, tolerance: f64, frequency: f64, damping: [f64; 3]) -> Model {
     let mut scene = shaken(98.0, frequency);
+    [scene.beam.mass_damping, scene.beam.stiffness_damping, scene.contact.damping] = damping;
     scene.effects.contact_law = law;
     scene.solver.tolerance = tolerance;
     scene.solver.modes = 10;
@@ -45,9 +60,8 @@ fn least_force(rig: &mut Rig, frequency: f64) -> f64 {
 
 #[test]
 fn the_linearised_contact_opens_at_the_analytic_threshold() {
-    for frequency in [250.0, 700.0, 1000.0, 1300.0, 2000.0] {
-        let tolerance = 1e-8;
-        let closed = model(ContactLawKind::Bonded, tolerance, frequency);
+    for (frequency, damping) in CASES {
+        let closed = model(ContactLawKind::Bonded, 1e-8, frequency, damping);
         let threshold = reference::opening_threshold(&closed, TAU * frequency);
         // The force misses zero by 1e-6 of the preload force on either side, a hundred times the error allowed.
         for (factor, opens) in [(1.0 - 1e-6, false), (1.0 + 1e-6, true)] {
@@ -62,7 +76,7 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
             }
             rig.state.links[0].last_opening = None;
             rig.run_to(&Inputs::default(), at + 3.0 / frequency).unwrap();
-            assert_eq!(rig.state.contact().last_opening > Some(0.0), opens, "{frequency} Hz, {factor}");
+            assert_eq!(rig.state.contact().last_opening > Some(0.0), opens, "{frequency} Hz, {damping:?}, {factor}");
         }
     }
 }
@@ -70,8 +84,8 @@ fn the_linearised_contact_opens_at_the_analytic_threshold() {
 #[test]
 fn the_nonlinear_force_leaves_the_linear_one_quadratically() {
     let frequency = 1000.0;
-    let hertz = model(ContactLawKind::Hertz, 1e-10, frequency);
-    let response = reference::response(&hertz, TAU * frequency).force.norm();
+    let hertz = model(ContactLawKind::Hertz, 1e-10, frequency, SPECIMEN);
+    let response = reference::response(&hertz, TAU * frequency).norm();
     let preload = hertz.preload.force;
     let deviation = |ratio: f64| {
         let mut rig = periodic(hertz.clone(), ratio * preload / response, frequency);
