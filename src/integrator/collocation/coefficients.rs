@@ -25,18 +25,18 @@ pub struct NodeRows<const S: usize> {
     pub rate_from_v: Nodal<S>,
 }
 
-/// A value for each mode of a group.
-pub(super) type Lanes = [f64; LANES];
+/// Two values for each mode of a group, one of its q and one of its v, as the states of the modes lie side by side.
+pub(super) type Pairs = [f64; 2 * LANES];
 
-/// State of a group of modes at the end of the step, in vectors over the modes.
+/// State of a group of modes at the end of the step.
 #[derive(Clone, Copy, Debug, Zeroable)]
 pub struct EndGroup<const S: usize> {
-    /// q and v at the end per initial q and v.
-    pub(super) free: FreeMotion<Lanes>,
-    /// q and v at the end per load at each node.
-    pub(super) q_from_load: [Lanes; S],
-    /// See [`EndGroup::q_from_load`].
-    pub(super) v_from_load: [Lanes; S],
+    /// q per initial q, and v per initial v.
+    pub(super) same: Pairs,
+    /// q per initial v, and v per initial q.
+    pub(super) crossed: Pairs,
+    /// q and v per load at each node.
+    pub(super) from_load: [Pairs; S],
 }
 
 impl<const S: usize> NodeRows<S> {
@@ -63,12 +63,11 @@ impl<const S: usize> EndGroup<S> {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "a mode of the group")]
     pub(super) fn set(&mut self, lane: usize, free: &FreeMotion, load: &Pair<Nodal<S>>) {
-        self.free.set(lane, free);
-        for (row, value) in self.q_from_load.iter_mut().zip(&load.q) {
-            row[lane] = *value;
-        }
-        for (row, value) in self.v_from_load.iter_mut().zip(&load.v) {
-            row[lane] = *value;
+        let [q, v] = [2 * lane, 2 * lane + 1];
+        (self.same[q], self.same[v]) = (free.q_from_q, free.v_from_v);
+        (self.crossed[q], self.crossed[v]) = (free.q_from_v, free.v_from_q);
+        for (row, (of_q, of_v)) in self.from_load.iter_mut().zip(load.q.iter().zip(&load.v)) {
+            (row[q], row[v]) = (*of_q, *of_v);
         }
     }
 }

@@ -1,11 +1,11 @@
 //! A trial step: the nodal forces of the links ([`newton`](crate::integrator::collocation::newton)), the motion they cause, and
 //! its error ([`error`](crate::integrator::collocation::error)).
 
-use crate::beam::mode::{ModeState, lanes};
+use crate::beam::mode::{Modal, ModeState};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
-use crate::integrator::collocation::coefficients::{EndGroup, NodalMotion};
+use crate::integrator::collocation::coefficients::{EndGroup, NodalMotion, Pairs};
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
@@ -16,6 +16,9 @@ use crate::math::nodal::{Nodal, add, add_products, dot, end, greatest, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
+
+/// A group of modes.
+type Group = [ModeState; LANES];
 
 /// Computes the prepared step from `state`, contacts closed or open as in `state`. `None` if the iteration for the forces does
 /// not converge.
@@ -333,86 +336,107 @@ impl<const S: usize> Step<'_, S> {
         for (link, nodes) in model.links.iter().zip(&trial.links) {
             add::<S, A>(&mut loads[link.port], link.sense, &nodes.forces);
         }
-        let pushed = scaled(&trial.accelerations, -1.0);
-        let mut ends = [([0.0; LANES], [0.0; LANES]); MAX_PORTS];
-        let (starts, modes) = (state.modes.as_chunks::<LANES>().0, trial.modes.as_chunks_mut::<LANES>().0);
-        for (group, (rows, (starts, modes))) in step.end.iter().zip(starts.iter().zip(modes)).enumerate() {
-            let mut end = LaneEnd::free::<S, A>(rows, starts);
-            end.add::<S, A>(rows, lanes(&model.participations, group), &pushed);
-            for (port, forces) in model.ports.iter().zip(&loads) {
-                end.add::<S, A>(rows, lanes(&port.shape, group), forces);
-            }
-            if let Some(on_modes) = on_modes {
-                let of_group = on_modes.chunks(LANES).nth(group).unwrap_or_default();
-                end.add_each::<S, A>(rows, of_group);
-            }
-            let LaneEnd { q, v } = end;
-            for (port, (y, rate)) in model.ports.iter().zip(&mut ends) {
-                let shape = lanes(&port.shape, group);
-                add_products::<LANES, A>(y, shape, &q);
-                add_products::<LANES, A>(rate, shape, &v);
-            }
-            for (mode, (q, v)) in modes.iter_mut().zip(q.iter().zip(&v)) {
-                (mode.q, mode.v) = (*q, *v);
+        let (starts, ends) = (state.modes.as_chunks().0, trial.modes.as_chunks_mut().0);
+        for (rows, (start, end)) in step.end.iter().zip(starts.iter().zip(ends.iter_mut())) {
+            move_freely::<S, A>(rows, start, end);
+        }
+        // Load by load, so that its values stay in registers.
+        load::<S, A>(step.end, ends, &model.participations, &scaled(&trial.accelerations, -1.0));
+        for (port, forces) in model.ports.iter().zip(&loads) {
+            load::<S, A>(step.end, ends, &port.shape, forces);
+        }
+        if let Some(on_modes) = on_modes {
+            load_each::<S, A>(step.end, ends, on_modes);
+        }
+        let mut sums: [Pairs; MAX_PORTS] = [[0.0; 2 * LANES]; MAX_PORTS];
+        for (port, sum) in model.ports.iter().zip(&mut sums) {
+            for (end, (shape, _)) in ends.iter().zip(port.shape.as_chunks().0.iter().zip(step.end)) {
+                add_products::<{ 2 * LANES }, A>(sum, &twice(shape), &pairs(end));
             }
         }
         for (index, link) in model.links.iter().enumerate() {
-            let (y, rate) = &ends[link.port];
+            let of_modes = sums[link.port].as_chunks().0.iter();
+            let (y, rate) = of_modes.fold((0.0, 0.0), |(y, rate), [q, v]| (y + q, rate + v));
             let speed = link.offset(&self.drive.velocities);
             let offset = link.offset(&state.displacements) + speed * step.length;
             let nodes = &mut trial.links[index];
             nodes.end = LinkEnd {
                 force: end(&nodes.forces),
-                approach: offset - link.sense * y.iter().sum::<f64>(),
-                rate: speed - link.sense * rate.iter().sum::<f64>(),
+                approach: offset - link.sense * y,
+                rate: speed - link.sense * rate,
             };
         }
     }
 }
 
-/// [`LANES`] modes at the end of a step.
-#[derive(Clone, Copy)]
-struct LaneEnd {
-    /// Displacements.
-    q: [f64; LANES],
-    /// Velocities.
-    v: [f64; LANES],
+/// Moves a group of modes from its start to the end of a step, without loads. All of this is done in pairs, as modes are read and
+/// written: apart, q and v take twice the instructions.
+#[inline(always)]
+fn move_freely<const S: usize, A: Arithmetic>(rows: &EndGroup<S>, start: &Group, end: &mut Group) {
+    let (same, mut other) = (pairs(start), [0.0; 2 * LANES]);
+    for (other, start) in other.as_chunks_mut().0.iter_mut().zip(start) {
+        *other = [start.v, start.q];
+    }
+    let mut sum = [0.0; 2 * LANES];
+    add_products::<{ 2 * LANES }, A>(&mut sum, &rows.same, &same);
+    add_products::<{ 2 * LANES }, A>(&mut sum, &rows.crossed, &other);
+    set(end, &sum);
 }
 
-impl LaneEnd {
-    /// A group of modes from these starts, without loads.
-    #[inline(always)]
-    fn free<const S: usize, A: Arithmetic>(rows: &EndGroup<S>, starts: &[ModeState; LANES]) -> Self {
-        let (mut start_q, mut start_v) = ([0.0; LANES], [0.0; LANES]);
-        for ((q, v), start) in start_q.iter_mut().zip(&mut start_v).zip(starts) {
-            (*q, *v) = (start.q, start.v);
+/// Adds to modes at the end what a load does that acts on each with its part, and has these nodal values.
+#[inline(always)]
+fn load<const S: usize, A: Arithmetic>(rows: &[EndGroup<S>], ends: &mut [Group], parts: &Modal, values: &Nodal<S>) {
+    for (rows, (end, parts)) in rows.iter().zip(ends.iter_mut().zip(parts.as_chunks().0)) {
+        let mut moved = [0.0; 2 * LANES];
+        for (value, row) in values.iter().zip(&rows.from_load) {
+            add::<{ 2 * LANES }, A>(&mut moved, *value, row);
         }
-        let (q, v) = rows.free.moved::<A>(&start_q, &start_v);
-        Self { q, v }
+        let mut sum = pairs(end);
+        add_products::<{ 2 * LANES }, A>(&mut sum, &twice(parts), &moved);
+        set(end, &sum);
     }
+}
 
-    /// Adds what a load does that acts on each mode with its part, and has these nodal values.
-    #[inline(always)]
-    fn add<const S: usize, A: Arithmetic>(&mut self, rows: &EndGroup<S>, parts: &[f64; LANES], values: &Nodal<S>) {
-        let (mut q, mut v) = ([0.0; LANES], [0.0; LANES]);
-        for (value, (of_q, of_v)) in values.iter().zip(rows.q_from_load.iter().zip(&rows.v_from_load)) {
-            add::<LANES, A>(&mut q, *value, of_q);
-            add::<LANES, A>(&mut v, *value, of_v);
-        }
-        add_products::<LANES, A>(&mut self.q, parts, &q);
-        add_products::<LANES, A>(&mut self.v, parts, &v);
-    }
-
-    /// Adds what loads of their own do to each mode.
-    #[inline(always)]
-    fn add_each<const S: usize, A: Arithmetic>(&mut self, rows: &EndGroup<S>, loads: &[Nodal<S>]) {
-        for (k, (of_q, of_v)) in rows.q_from_load.iter().zip(&rows.v_from_load).enumerate() {
+/// Adds what loads of their own do to each mode.
+#[inline(always)]
+fn load_each<const S: usize, A: Arithmetic>(rows: &[EndGroup<S>], ends: &mut [Group], loads: &[Nodal<S>]) {
+    for (rows, (end, loads)) in rows.iter().zip(ends.iter_mut().zip(loads.chunks(LANES))) {
+        let mut sum = pairs(end);
+        for (k, row) in rows.from_load.iter().enumerate() {
             let mut load = [0.0; LANES];
             for (load, values) in load.iter_mut().zip(loads) {
                 *load = values.get(k).copied().unwrap_or_default();
             }
-            add_products::<LANES, A>(&mut self.q, of_q, &load);
-            add_products::<LANES, A>(&mut self.v, of_v, &load);
+            add_products::<{ 2 * LANES }, A>(&mut sum, row, &twice(&load));
         }
+        set(end, &sum);
     }
+}
+
+/// The values of a group.
+#[inline(always)]
+fn pairs(modes: &Group) -> Pairs {
+    let mut pairs = [0.0; 2 * LANES];
+    for (pair, mode) in pairs.as_chunks_mut().0.iter_mut().zip(modes) {
+        *pair = [mode.q, mode.v];
+    }
+    pairs
+}
+
+/// Sets the values of a group.
+#[inline(always)]
+fn set(modes: &mut Group, pairs: &Pairs) {
+    for (mode, [q, v]) in modes.iter_mut().zip(pairs.as_chunks().0) {
+        (mode.q, mode.v) = (*q, *v);
+    }
+}
+
+/// The value of each mode for its q and for its v.
+#[inline(always)]
+fn twice(values: &[f64; LANES]) -> Pairs {
+    let mut pairs = [0.0; 2 * LANES];
+    for (pair, value) in pairs.as_chunks_mut().0.iter_mut().zip(values) {
+        *pair = [*value; 2];
+    }
+    pairs
 }
