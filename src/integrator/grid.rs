@@ -74,8 +74,8 @@ impl Grid {
         let shorter = round_down(requested);
         let (length, done) = if self.free {
             (shorter, 1.0)
-        } else if shorter < remaining {
-            (shorter, self.done + shorter / self.size)
+        } else if time + shorter < end {
+            (shorter, (self.done + shorter / self.size).min(1.0))
         } else {
             (round_up(remaining), 1.0)
         };
@@ -136,6 +136,25 @@ mod tests {
             let part = target.done - grid.done;
             let fraction = part.log2().fract() == 0.0 && target.length == part * grid.size;
             assert!(target.recurring && (fraction || target.length == round_down(target.length)), "{k}: {target:?}");
+        }
+    }
+
+    /// It would be cut to nothing at its start, time and again.
+    #[test]
+    fn no_step_begins_at_the_end() {
+        let length = 1.5 * (-14.0_f64).exp2();
+        for start in [0.0, 9.243_236_078_726_682e-4, 0.1, 1.0] {
+            for spacings in -8..8 {
+                let size = f64::from_bits((4.0 * length).to_bits().saturating_add_signed(spacings));
+                let mut grid = Grid { recurs: false, ..Grid::over(start, size) };
+                let mut time = grid.start;
+                while grid.done < 1.0 {
+                    assert!(time < grid.end(), "{start} {spacings}: {grid:?}");
+                    let target = grid.target(length, time, None);
+                    (time, grid.done) = (target.time, target.done);
+                }
+                assert!(time >= grid.end(), "{start} {spacings}: {time}");
+            }
         }
     }
 
