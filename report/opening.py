@@ -21,7 +21,7 @@ from report.files import OUT
 
 RANGE = (10.0, 3000.0)  # Hz
 FINE = 9  # frequencies around the weakest
-UNIT = Sine("1 g", "", "measured", 1.0, 10.0, RANGE, 1.0)
+UNIT = Sine("1 g", "", "measured", 1.0, None, RANGE, 1.0)
 """At every frequency of the map 1 g, not limited by the displacement."""
 CONDITIONS = ["204 A", "204 B", "204 D"]  # of MIL-STD-202
 
