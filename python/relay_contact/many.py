@@ -93,10 +93,10 @@ def side_by_side(
 
 
 def run_many(
-    scenes: Iterable[Case],
+    scenes: str | Path | Scene | Iterable[Case],
     *,
     workers: int | None = None,
-    outputs: list[str] | None = None,
+    outputs: str | list[str] | None = None,
     component: Component | None = None,
     progress: bool | Callable[[int], object] = False,
 ) -> "pd.DataFrame":
@@ -112,9 +112,10 @@ def run_many(
     # It takes half a second to import.
     import pandas as pd
 
-    component, cases = component or Component(), list(scenes)
+    # A text alone would be a scene for each of its letters.
+    component, cases = component or Component(), [scenes] if isinstance(scenes, str | Path | Scene) else list(scenes)
     read = cache(Scene.read)
-    names = [component.name(name) for name in outputs or []]
+    names = [component.name(name) for name in ([outputs] if isinstance(outputs, str) else outputs or [])]
 
     def row(case: Case) -> tuple[dict[str, Value], dict[str, float], dict[str, str]]:
         given, changes = case if isinstance(case, tuple) else (case, {})

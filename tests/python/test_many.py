@@ -59,6 +59,13 @@ def test_units_and_chosen_outputs() -> None:
     assert table["contact.closed"][0] in (0.0, 1.0)
 
 
+def test_a_scene_and_an_output_alone_are_one_each() -> None:
+    table = run_many("paper-1khz", outputs="preload.force", component=COMPONENT)
+    assert list(table) == ["scene", "preload.force", "warning", "error"]
+    assert table["scene"].tolist() == ["paper-1khz"]
+    assert table["error"].tolist() == [""]
+
+
 def test_a_bad_scene_is_an_error_of_its_row_alone(tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("stop = -1\n")
