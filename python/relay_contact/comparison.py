@@ -13,7 +13,7 @@ import numpy as np
 
 from relay_contact import tables
 from relay_contact.component import Array
-from relay_contact.figures import BLUE, RED, three
+from relay_contact.figures import BLUE, RED, save, three
 from relay_contact.files import RelayContactError, at_once, spare
 from relay_contact.scene import read_table
 from relay_contact.tables import TIMES, Units
@@ -201,5 +201,4 @@ def draw(found: Comparison, threshold: float, path: Path) -> None:
     figure.legend(*durations.get_legend_handles_labels(), loc="outside upper center", ncols=2, frameon=False)
     shown = np.append(found.simulated.times, found.measured.times)
     course.set_xlim(1e3 * shown.min(), 1e3 * shown.max())
-    with at_once(path) as part:
-        figure.savefig(part, format="png", dpi=130)
+    save(figure, path)

@@ -1,6 +1,13 @@
-"""Colours and numbers of all figures."""
+"""Colours, numbers and files of all figures."""
 
 import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from relay_contact.files import at_once
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 GRAVITY = 9.80665  # m/s2
 # Colours of Okabe and Ito, told apart also by the colour-blind.
@@ -25,3 +32,9 @@ def three(value: float) -> str:
         return "1.00"
     texts = (significant(value, digits) for digits in range(3, 16))
     return next(text for text in texts if (float(text) < 1) == (value < 1) and (float(text) > 1) == (value > 1))
+
+
+def save(figure: "Figure", path: Path) -> None:
+    """Write a figure, as a whole or not at all."""
+    with at_once(path) as part:
+        figure.savefig(part, format="png", dpi=130)

@@ -15,8 +15,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from relay_contact.component import Array, Unit, Value, units
-from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
-from relay_contact.files import RelayContactError, at_once, description_path
+from relay_contact.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, save
+from relay_contact.files import RelayContactError, description_path
 from relay_contact.scene import read_table
 
 COLOURS = [BLUE, RED, GREEN, PURPLE, BLACK, ORANGE]
@@ -154,6 +154,5 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
     grid[-1, 0].set_xlim(scale * time[0], scale * time[-1])
     figure.align_ylabels()
     path = table.with_name(table.name.removesuffix(".csv") + ".png")
-    with at_once(path) as part:
-        figure.savefig(part, format="png", dpi=130)
+    save(figure, path)
     return path

@@ -11,7 +11,7 @@ from matplotlib.ticker import NullFormatter
 
 from relay_contact import pages
 from relay_contact.component import SIGNS, Array, Component, Unit, units
-from relay_contact.figures import BLACK, BLUE, GREY, RED
+from relay_contact.figures import BLACK, BLUE, GREY, RED, save
 from relay_contact.files import at_once, write_at_once
 from relay_contact.identification import relay_file
 from relay_contact.identification.fit import Set
@@ -137,8 +137,7 @@ def write(folder: Path, result: Identification, component: Component) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with mpl.rc_context(pages.STYLE):
         figure = draw(result)
-        with at_once(folder / FILES[1]) as part:
-            figure.savefig(part, format="png", dpi=130)
+        save(figure, folder / FILES[1])
         page = pages.render(
             "identification.html", title=f"{result.relay.title}, identified", found=(HEAD, cells(component, result)),
             remarks=silent(result), figure=pages.svg(figure), component=component.description.guid,
