@@ -9,7 +9,6 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::beam::mode::Mode;
 use crate::beam::section::Section;
-use crate::math::legendre;
 
 /// The polynomial space and its matrices, without dimensions.
 #[derive(Clone, Debug)]
@@ -37,26 +36,26 @@ pub(crate) struct Places {
 impl Space {
     /// The space spanned by `count` functions.
     pub fn new(count: usize) -> Self {
-        let functions = |x: f64| functions(x, count);
-        let mut space = Self {
-            mass: DMatrix::zeros(count, count),
-            geometric: DMatrix::zeros(count, count),
-            load: DVector::zeros(count),
-            at: Places {
-                tip: functions(1.0).0,
-                slope: functions(1.0).1,
-                pusher: DVector::zeros(count),
-                parallel: functions(1.0).0,
-            },
+        // By columns of factors of the Legendre polynomials P_row; the curvatures are orthonormal polynomials.
+        let curvature = |row, k| if row == k { (k as f64 + 0.5).sqrt() } else { 0.0 };
+        let slopes = antiderivatives(&DMatrix::from_fn(count + 2, count, curvature));
+        let values = antiderivatives(&slopes);
+        let products = |functions: &DMatrix<f64>| {
+            let mut found = DMatrix::zeros(count, count);
+            for (row, factors) in functions.row_iter().map(|row| row.transpose()).enumerate() {
+                // The integral of P_row squared is 1 / (row + 1/2).
+                found.ger(1.0 / (row as f64 + 0.5), &factors, &factors, 1.0);
+            }
+            found
         };
-        // Degree 2 (count + 1) is integrated exactly.
-        for (x, weight) in legendre::gauss(count + 2) {
-            let (value, slope) = functions(x);
-            space.mass.ger(weight, &value, &value, 1.0);
-            space.geometric.ger(weight, &slope, &slope, 1.0);
-            space.load.axpy(weight, &value, 1.0);
+        // At the tip each polynomial is 1; all but the first integrate to nothing.
+        let (tip, slope) = (values.row_sum_tr(), slopes.row_sum_tr());
+        Self {
+            load: values.row(0).transpose() * 2.0,
+            mass: products(&values),
+            geometric: products(&slopes),
+            at: Places { slope, pusher: DVector::zeros(count), parallel: tip.clone(), tip },
         }
-        space
     }
 
     /// The space of other functions, orthonormal in strain energy, in units of the section, which carries no rivet: products
@@ -157,19 +156,12 @@ impl Space {
     }
 }
 
-/// Values and slopes of the basis functions at `xi`.
-fn functions(x: f64, count: usize) -> (DVector<f64>, DVector<f64>) {
-    let p = legendre::polynomials(x, count + 2);
-    // Antiderivative of P_k that vanishes at -1; the recursion of the Legendre polynomials gives it in closed form.
-    let first = |k: usize| match k.checked_sub(1).and_then(|below| p.get(below)) {
-        None => x + 1.0,
-        Some(below) => (p.get(k + 1).copied().unwrap_or_default() - below) / (2 * k + 1) as f64,
-    };
-    let scale = |k: usize| (k as f64 + 0.5).sqrt();
-    let value = |k: usize| match k {
-        0 => (x + 1.0).powi(2) / 2.0,
-        1 => (x.powi(3) - 3.0 * x - 2.0) / 6.0,
-        k => (first(k + 1) - first(k - 1)) / (2 * k + 1) as f64,
-    };
-    (DVector::from_fn(count, |k, _| scale(k) * value(k)), DVector::from_fn(count, |k, _| scale(k) * first(k)))
+/// The antiderivatives that vanish at -1 of functions, which are columns of factors of the Legendre polynomials: that of P_k is
+/// `(P_(k+1) - P_(k-1)) / (2 k + 1)`, with `P_(-1) = -P_0`.
+fn antiderivatives(functions: &DMatrix<f64>) -> DMatrix<f64> {
+    let of = |row: usize, k: usize| functions.get((row, k)).map_or(0.0, |factor: &f64| *factor);
+    DMatrix::from_fn(functions.nrows(), functions.ncols(), |row, k| {
+        let below = row.saturating_sub(1);
+        of(below, k) / (2 * below + 1) as f64 - of(row + 1, k) / (2 * row + 3) as f64
+    })
 }

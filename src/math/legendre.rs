@@ -17,47 +17,26 @@ fn next(n: usize, x: f64, previous: f64, current: f64) -> f64 {
     ((2.0 * n + 1.0) * x * current - n * previous) / (n + 1.0)
 }
 
-/// Points computed side by side, as each step of the recursion waits for the one before.
-const LANES: usize = 4;
-
-/// P_degree(x) and its derivative at several |x| < 1.
-fn values_and_slopes(degree: usize, x: &[f64; LANES]) -> [(f64, f64); LANES] {
-    let (mut previous, mut current) = ([0.0; LANES], [1.0; LANES]);
+/// P_degree(x) and its derivative at |x| < 1.
+fn value_and_slope(degree: usize, x: f64) -> (f64, f64) {
+    let (mut previous, mut current) = (0.0, 1.0);
     for n in 0..degree {
-        let mut following = current;
-        for (((following, x), previous), current) in following.iter_mut().zip(x).zip(&previous).zip(&current) {
-            *following = next(n, *x, *previous, *current);
-        }
-        (previous, current) = (current, following);
+        (previous, current) = (current, next(n, x, previous, current));
     }
-    let mut pairs = [(0.0, 0.0); LANES];
-    for (((pair, x), previous), current) in pairs.iter_mut().zip(x).zip(&previous).zip(&current) {
-        *pair = (*current, degree as f64 * (previous - x * current) / (1.0 - x * x));
-    }
-    pairs
+    (current, degree as f64 * (previous - x * current) / (1.0 - x * x))
 }
 
 /// Nodes and weights of the Gauss-Legendre quadrature with `count` points on [-1, 1], nodes ascending; exact for
 /// polynomials up to degree 2 `count` - 1.
 pub fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
-    (0..count.div_ceil(LANES)).flat_map(move |group| {
+    (0..count).rev().map(move |k| {
         // Tricomi's estimate of the k-th root from above, then Newton's iteration, which converges quadratically from there.
-        let mut roots: [f64; LANES] = std::array::from_fn(|lane| {
-            let k = count.saturating_sub(group * LANES + lane + 1) as f64;
-            (std::f64::consts::PI * (k + 0.75) / (count as f64 + 0.5)).cos()
-        });
+        let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (count as f64 + 0.5)).cos();
         for _ in 0..6 {
-            let before = roots;
-            for (x, (value, slope)) in roots.iter_mut().zip(values_and_slopes(count, &before)) {
-                *x -= value / slope;
-            }
-            if roots == before {
-                break;
-            }
+            let (value, slope) = value_and_slope(count, x);
+            x -= value / slope;
         }
-        let slopes = values_and_slopes(count, &roots);
-        let pairs = roots.into_iter().zip(slopes);
-        let pairs = pairs.map(|(x, (_, slope))| (x, 2.0 / ((1.0 - x * x) * slope * slope)));
-        pairs.take(count - group * LANES)
+        let (_, slope) = value_and_slope(count, x);
+        (x, 2.0 / ((1.0 - x * x) * slope * slope))
     })
 }
