@@ -21,7 +21,7 @@ SCENES = {name: Scene.read(path) for name, path in scenes().items()}
 
 
 # Where a parameter set has its spring files.
-shutil.copytree(ROOT / "scenes" / "springs", Path(COMPONENT.folder) / "resources", dirs_exist_ok=True)
+shutil.copytree(ROOT / "scenes" / "springs", COMPONENT.folder / "resources", dirs_exist_ok=True)
 
 
 def read_set(folder: Path, name: str, plain: bool = False) -> dict[str, Value]:

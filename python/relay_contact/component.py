@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from copy import copy
 from ctypes import c_int, c_size_t, c_void_p
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
@@ -133,20 +133,21 @@ class Component:
         if folder is None:
             folder = Path(mkdtemp())
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
-        self.folder: str = extract(str(self.path), str(folder), lambda name: not name.startswith("documentation/"))
+        self.folder = Path(extract(self.path, folder, lambda name: not name.startswith("documentation/")))
         self.told: set[str] = set()
         self.idle: list[Reused] = []
         """Instances that no contact has at present."""
-        weakref.finalize(self, free, self.idle)
 
     @cached_property
     def functions(self) -> FMU2Functions:
-        """The functions of the library, without an instance."""
-        return FMU2Functions(
+        """The functions of the library, without an instance; it is loaded until this object is gone."""
+        functions = FMU2Functions(
             guid=self.description.guid,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             unzipDirectory=self.folder,
         )
+        weakref.finalize(self, unload, functions, self.idle)
+        return functions
 
     def warn(self, message: str) -> None:
         """Keep a warning, and tell it as a Python warning, once for all instances."""
@@ -290,10 +291,28 @@ def silent(_status: int, _message: str) -> None:
     """Tell nobody."""
 
 
-def free(instances: list[Reused]) -> None:
-    """Free instances."""
+def unload(functions: FMU2Functions, instances: list[Reused]) -> None:
+    """Free the instances of a library, and the library."""
     for each in instances:
         each.fmu.freeInstance()
+    functions.freeLibrary()
+
+
+def default_component() -> Component:
+    """Return the component that is used where none is given, which has told no warning yet.
+
+    It is unpacked once for all runs, which takes as long as many of them, and anew once its file has changed.
+    """
+    path = fmu_path()
+    component = unpacked(path, path.stat().st_mtime_ns if path.is_file() else 0)
+    component.told.clear()
+    return component
+
+
+@lru_cache(maxsize=1)
+def unpacked(path: Path, _changed: int) -> Component:
+    """Unpack a component that was changed at a time (ns)."""
+    return Component(path)
 
 
 class Contact:
@@ -456,7 +475,7 @@ class Contact:
                 if parameter in values and any(name.startswith(prefix) for name in values):
                     # Its entries are changed only once the component has accepted it.
                     self.set(parameter, values[parameter])
-            own = applied(values, start, Path(self.component.folder))
+            own = applied(values, start, self.component.folder)
             self.changed_files = {
                 str(own[name]): str(values[name]) for name in OF_FILES if own.get(name) and own[name] != values[name]
             }

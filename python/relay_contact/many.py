@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, TypeVar
 
-from relay_contact.component import KEPT, Component, Value, Values, units
+from relay_contact.component import KEPT, Component, Value, Values, default_component, units
 from relay_contact.files import RelayContactError
 from relay_contact.scene import Scene, progress_bar
 
@@ -112,8 +112,9 @@ def run_many(
     # It takes half a second to import.
     import pandas as pd
 
+    component = component or default_component()
     # A text alone would be a scene for each of its letters.
-    component, cases = component or Component(), [scenes] if isinstance(scenes, str | Path | Scene) else list(scenes)
+    cases = [scenes] if isinstance(scenes, str | Path | Scene) else list(scenes)
     read = cache(Scene.read)
     names = [component.name(name) for name in ([outputs] if isinstance(outputs, str) else outputs or [])]
 

@@ -16,7 +16,7 @@ from pydantic import ConfigDict, Field
 from pydantic.alias_generators import to_camel
 from tqdm import tqdm
 
-from relay_contact.component import Array, Component, Contact, Value, nearest, units, warnings_kept
+from relay_contact.component import Array, Component, Contact, Value, default_component, nearest, units, warnings_kept
 from relay_contact.files import RelayContactError, at_once, named, scenes
 from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
 from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, RATIOS, TIMES, Units
@@ -260,7 +260,7 @@ def run(
     "base.acceleration": a}, linear between its points: each step gets the input's value and derivative.
     `progress=True` shows a bar; a function is called every thousand steps with the time that is reached.
     """
-    component = component or Component()
+    component = component or default_component()
     scene = (scene if isinstance(scene, Scene) else Scene.read(scene, component)).changed(component, changes)
     course = scene.table if inputs is None else courses(component, inputs)
     if twice := course.keys() & {component.settable(name) for name in changes}:

@@ -1,8 +1,10 @@
 """The package `relay_contact`: runs of scenes, and what it says about wrong names and values."""
 
 import gc
+import os
 import re
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -24,9 +26,10 @@ from relay_contact import (
     qualification,
     read_table,
     run,
+    run_many,
 )
 from relay_contact.command import main
-from relay_contact.component import sine
+from relay_contact.component import default_component, sine
 
 
 def test_a_run_has_names_and_units() -> None:
@@ -69,6 +72,29 @@ def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
         Component(other)
     with pytest.raises(RelayContactError, match=r"is missing: build it with"):
         Component(str(tmp_path / "none.fmu"))
+
+
+def test_runs_without_a_component_have_one_until_its_file_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To unpack one takes as long as thirty runs, and 2 MB stayed of each."""
+    own = tmp_path / "own.fmu"
+    shutil.copyfile(FMU, own)
+    monkeypatch.setenv("RELAY_CONTACT_FMU", str(own))
+    first = default_component()
+    for _ in range(2):
+        with pytest.warns(RelayContactWarning, match=r"usual is"):
+            run("at-rest", tip_mass=1e-2)
+    assert run_many("at-rest")["error"].item() == ""
+    assert default_component() is first
+    os.utime(own, (0, 0))
+    assert default_component() is not first
+    folder = first.folder
+    del first
+    gc.collect()
+    assert not folder.exists()
+    if sys.platform == "linux":
+        assert str(folder) not in Path("/proc/self/maps").read_text(encoding="utf-8")
 
 
 def test_the_command_runs_a_scene_as_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from relay_contact.component import Component
+from relay_contact.component import Component, default_component
 from relay_contact.files import RelayContactError, named, spare
 from relay_contact.identification.measurement import read
 from relay_contact.identification.prediction import Laboratory
@@ -29,7 +29,7 @@ def identify(
     without them stiffness, damping, rivet, overtravel and contact damping. With `out` a folder is written: the relay's
     file with the values found and their uncertainties, a table, a page and a figure.
     """
-    component = component or Component()
+    component = component or default_component()
     path = named("relay", relay, relays())
     described = Relay.read(path, component)
     if len({values.get("beam.file") for values in described.positions.values()}) > 1:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from relay_contact.component import Component
+from relay_contact.component import Component, default_component
 from relay_contact.files import RelayContactError, spare
 from relay_contact.qualification.assessment import FEW, assess, chosen
 from relay_contact.qualification.relay import Relay, check_monitor, relays
@@ -54,7 +54,7 @@ def qualify(
         raise RelayContactError(f"tests {', '.join(tests)}: not allowed without a standard, whose tests they are")
     if (unit or rate) and not history:
         raise RelayContactError("unit, rate: not allowed without a record, whose they are")
-    component, out = component or Component(), Path(out)
+    component, out = component or default_component(), Path(out)
     spare((out / name for name in FILES), map(Path, history or []))
     described = Relay.read(relay, component)
     asked = Standard.read(standard or LIMITS)
