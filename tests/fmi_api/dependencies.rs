@@ -69,30 +69,16 @@ SECOND second.curvatureRadius=5 second.damping=1e-6 beam.stiffnessDamping=3e-6
 SECOND effects.extremes=0 effects.chatter=0
 RUBBING ALL_COUNT effects.axialForce=4 chatter.resistanceThreshold=critical
 RUBBING PULLED effects.axialForce=4
-RUBBING solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
 ON_SPRING RUBBING PULLED ALL_COUNT effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
-ON_SPRING effects.contactLaw=4 solver.tolerance=1e-9 fixed.stiffnessDamping=3e-6
-ON_SPRING PULLED contact.overtravel=critical
 PRESSED OPEN pusher.displacement=3e-4 RUBBING PULLED ALL_COUNT effects.axialForce=4 beam.axialForce=1 \
     chatter.resistanceThreshold=critical
-PRESSED OPEN pusher.displacement=3e-4 ON_SPRING solver.tolerance=1e-9
-PRESSED pusher.stiffness=1e9 pusher.damping=1e3 solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
-PRESSED PULLED pusher.displacement=1e-5 contact.overtravel=critical
 PRESSED PULLED RUBBING effects.axialForce=4 beam.axialForce=1 pusher.displacement=critical
-PRESSED PULLED ON_SPRING effects.contactLaw=4 pusher.displacement=critical
-PRESSED OPEN PULLED pusher.displacement=critical
-MOVED OPEN
 MOVED OPEN PULLED RUBBING ALL_COUNT effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
-MOVED OPEN coil.relativeCurrent=0
-MOVED OPEN ON_SPRING PULLED effects.contactLaw=4
 MOVED OPEN FLOATING RUBBING ALL_COUNT chatter.resistanceThreshold=critical
-MOVED OPEN FLOATING PULLED effects.axialForce=1
 MOVED OPEN armature.holdForce=2 FLOATING ON_SPRING
 MOVED OPEN PULLED coil.relativeCurrent=0 armature.mass=0.5 armature.restPosition=-1e-5 armature.corePosition=1e-3
-MOVED FLOATING PULLED contact.overtravel=critical
 BESIDE parallel.offset=1e-5 beam.file=2
 BESIDE PULLED ALL_COUNT effects.contactLaw=4 effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
-BESIDE parallel.damping=1e-6 parallel.curvatureRadius=5 solver.tolerance=1e-9 beam.stiffnessDamping=3e-6
 BESIDE PRESSED OPEN PULLED pusher.displacement=3e-4 ON_SPRING
 BESIDE MOVED OPEN PULLED ON_SPRING effects.contactLaw=4
 BESIDE PULLED parallel.offset=-1e-5 contact.overtravel=critical effects.contactLaw=4
