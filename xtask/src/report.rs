@@ -6,6 +6,7 @@ use std::iter;
 use anyhow::Result;
 
 use crate::commands::{cargo, is_there, run as run_command};
+use crate::test::LINT;
 use crate::{fmu, importers, python};
 
 /// The message where Chromium is missing.
@@ -33,10 +34,12 @@ pub fn with_component(task: &str) -> Result<()> {
 
 /// Measures time over accuracy and what instances cost, and writes tables and figures of `docs/accuracy.md`.
 pub fn accuracy(quick: bool) -> Result<()> {
+    // The target folder is its own, as the library is built here with other features.
+    let benches = ["--package=benches", "--features=diffsol", "--target-dir=target/benches"];
+    // The comparison with diffsol and its sixty packages are compiled nowhere else.
+    run_command(cargo().arg("clippy").args(benches).args(LINT))?;
     let mut run = cargo();
-    run.args(["run", "--release", "--package=benches", "--bin=accuracy", "--features=diffsol"])
-        // Its own, as the library is built here with other features.
-        .args(["--target-dir=target/benches", "--"]);
+    run.args(["run", "--release", "--bin=accuracy"]).args(benches).arg("--");
     if quick {
         return run_command(run.arg("--quick"));
     }

@@ -9,7 +9,7 @@ use anyhow::{Result, anyhow, bail};
 use crate::{fmu, importers, python, report, valgrind, wheel};
 
 /// Arguments of cargo's lint after the packages.
-const LINT: [&str; 4] = ["--all-targets", "--", "-D", "warnings"];
+pub const LINT: [&str; 4] = ["--all-targets", "--", "-D", "warnings"];
 
 #[derive(clap::Args, Clone, Copy)]
 pub struct Arguments {
@@ -65,7 +65,7 @@ fn library() -> Result<()> {
     python::prepare()?;
     stage("lint", || {
         let mut lint = importers::workspace("clippy")?;
-        run_command(lint.arg("--features=conformance/types,benches/diffsol").args(LINT))
+        run_command(lint.arg("--features=conformance/types").args(LINT))
     })?;
     rust()?;
     if_installed("valgrind", is_there("valgrind"), valgrind::MISSING, valgrind::run)
