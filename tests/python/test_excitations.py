@@ -317,6 +317,9 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     short = replace(test, density=((300.0, 0.01), (302.0, 0.01)), rms=0.1414, duration=10 / 300)
     least, middle, most = (response.random(short, 0.0, chance) for chance in (1e-6, 0.5, 1 - 1e-6))
     assert 0 < least < middle < most < np.inf
+    # Of a band of three lines of the response, which are half a Hz apart.
+    narrow = replace(short, density=((300.0, 0.01), (301.0, 0.01)), rms=0.1)
+    assert response.moments(narrow)[0] == pytest.approx(0.1 * G * response.gain[601], rel=0.01)
 
 
 @pytest.mark.parametrize("quality", [3.0, 30.0, 100.0])

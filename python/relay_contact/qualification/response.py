@@ -22,7 +22,7 @@ from relay_contact.component import Array, Component, Contact, Values
 from relay_contact.figures import GRAVITY as G
 from relay_contact.files import RelayContactError
 from relay_contact.qualification.distributions import below
-from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine
+from relay_contact.qualification.excitation import BAND, STEP, Course, Random, Sine, overall
 from relay_contact.qualification.parts import CONTACT, Part, Rest, at_rest, parts
 
 PHASES = 1024
@@ -104,9 +104,10 @@ class Response:
 
         Third is how wide its spectrum is about its centre, in parts of the mean frequency.
         """
-        density = test.spectrum(self.frequency) * self.gain**2
-        step = self.frequency[1]
-        power, first, second = (float((density * self.frequency**order).sum() * step) for order in range(3))
+        density = test.spectrum(self.frequency)
+        # Of a narrow band few lines are within, which have all of its power.
+        powers = density / density.sum() * (G * overall(test.density)) ** 2 * self.gain**2
+        power, first, second = (float((powers * self.frequency**order).sum()) for order in range(3))
         return power**0.5, (second / power) ** 0.5, max(1 - first**2 / (power * second), 0.0) ** 0.5
 
     def random(
