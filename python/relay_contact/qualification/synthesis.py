@@ -51,8 +51,10 @@ def grid(low: float, high: float, spacing: float = SPACING) -> Array:
 def pulse(required: tuple[tuple[float, float], ...], quality: float) -> tuple[Array, Array]:
     """Return time (s) and acceleration (m/s2) of a pulse whose spectrum is the required one (Hz, g) or more."""
     corners, levels = np.array(required).T
-    frequencies = grid(corners[0], corners[-1])
-    wanted = G * np.exp(np.interp(np.log(frequencies), np.log(corners), np.log(levels)))
+    frequencies, between = (grid(corners[0], corners[-1], spacing) for spacing in (SPACING, SPACING**0.25))
+    wanted, whole = (
+        G * np.exp(np.interp(np.log(each), np.log(corners), np.log(levels))) for each in (frequencies, between)
+    )
     omega = 2 * np.pi * frequencies
     slow = omega[0] / BELOW
     step = 1 / SMOOTH / frequencies[-1]
@@ -70,6 +72,7 @@ def pulse(required: tuple[tuple[float, float], ...], quality: float) -> tuple[Ar
         ratio = wanted / response(course, step, frequencies, quality)
         excess = ratio.max() / ratio.min()
         if excess < best[0]:
-            best = excess, course * ratio.max()
+            best = excess, course
         amplitudes *= ratio**STRENGTH
-    return time, best[1]
+    # Raised to what is required between the sines, too.
+    return time, best[1] * (whole / response(best[1], step, between, quality)).max()
