@@ -111,6 +111,7 @@ def test_a_comparison_without_its_columns_is_refused(run: Path, tmp_path: Path) 
         # Two at once; microseconds that say they are milliseconds.
         ("start [ms],duration [us]\n1,400\n1.2,400\n", ":2: column duration: 400 us: not allowed, allowed is up to"),
         ("start [ms],duration [ms]\n1,400\n2,400\n", ":2: column duration: 400 ms: not allowed, allowed is up to"),
+        ("start [ms],duration [us]\n1,0\n2,400\n", ":2: column duration: 0 us: not allowed, allowed is greater than 0"),
         # Leads of the meter that are exchanged: it never opens.
         ("time [ms],resistance [Ohm]\n0,-0.1\n1,-1e6\n2,-0.1\n", ":3: column resistance: -1e6 Ohm: not allowed"),
     ):

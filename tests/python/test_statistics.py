@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.distance import cdist
 from scipy.stats import norm, qmc
 
 from qualified import described, placed
@@ -16,7 +17,7 @@ from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.position import Position
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.results import Chance
-from relay_contact.qualification.statistics import MANY, Surface, chance, drawn, first_order
+from relay_contact.qualification.statistics import MANY, Surface, chance, distances, drawn, first_order
 from relay_contact.qualification.words import chance_text
 
 SLOW = Shock("slow", "", "from memory", 20.0, 0.1)
@@ -134,6 +135,7 @@ def test_a_surface_follows_margins_and_tells_its_error() -> None:
         return np.log(1.2 * (1 + 0.05 * at[:, 0]) * np.sqrt(1 + 0.03 * at[:, 1]) + 0.02 * at[:, 0] * at[:, 2])
 
     surface, others = Surface(scores, margin(scores), np.ones(256)), drawn(4)
+    assert distances(others[:5], scores) == pytest.approx(cdist(others[:5], scores))
     left = surface(others) - margin(others)
     # Terms of third order: 0.05 times 0.02 / 1.2, in scores of 1.
     assert np.std(left) < 2 * 0.05 * 0.02 / 1.2
