@@ -178,6 +178,17 @@ def test_a_record_is_sought_in_both_directions() -> None:
     assert transient_level(own, test)[0].factor == pytest.approx(levels[1], rel=2e-4)
 
 
+@pytest.mark.parametrize("end", [0.1, 0.3])
+def test_what_follows_a_record_is_not_taken_for_a_dip(end: float) -> None:
+    """It ends while 100 g press the contact: were they taken off at once, it would open at a few times the level."""
+    time = np.arange(0.0, end, 5e-5)
+    press = 50 * GRAVITY * (1 - np.cos(np.pi * np.minimum(time / 0.05, 1)))
+    test = History("press", "", READ, record=Record(Path("press.csv"), "a", time, press), both=False, digest="")
+    position = placed(described({}), test)
+    assert position.linear(position.specimen.response, test) == MOST
+    assert judgement.judged(position, test, FEW).limits == "hardly moved by the test"
+
+
 @pytest.mark.parametrize("opening", [1e-4, 3e-4, 1e-3])
 def test_a_sine_is_below_a_level_as_long_in_time_as_over_frequency(opening: float) -> None:
     """Up to twice the level of a touch; to a step of time."""

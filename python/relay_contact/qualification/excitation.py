@@ -143,9 +143,10 @@ class Course:
         """Return what is from the time of a point to another time (s), its own points; over a fifth it rises from 0."""
         first, last = np.searchsorted(self.time, (begin, end))
         time, acceleration = self.time[first : last + 1], self.acceleration[first : last + 1]
+        if not first:
+            return Course(time - time[0], acceleration)
         since = np.minimum((time - time[0]) / (0.2 * (time[-1] - time[0])), 1.0)
-        rise = (1 - np.cos(np.pi * since)) / 2 if first else np.ones(len(time))
-        return Course(time - time[0], rise * acceleration)
+        return Course(time - time[0], (1 - np.cos(np.pi * since)) / 2 * acceleration)
 
 
 @dataclass(frozen=True, config=STRICT)

@@ -343,7 +343,7 @@ def words(position: Position, test: Transient, way: str, piece: Piece, start: fl
         slow = response.reserve / max(response.gain[0] * G * test.acceleration, 1e-300) / piece.guess
         of = " of the spring" if position.part == CONTACT else ""
         return "", f"inertia{of}; dynamic amplification {three(slow)}", f"{way} direction"
-    change = test.directions[way] * response.change(piece.course.sampled())
+    change = test.directions[way] * response.moved(piece.course)
     dip = STEP * int(change.argmin()) + piece.begin + start
     share = float(np.abs(change).max() / max(response.gain[0] * np.abs(piece.course.acceleration).max(), 1e-300))
     limits = f"dip; dynamic amplification {three(share)} of the peak acceleration there"

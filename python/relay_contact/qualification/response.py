@@ -163,9 +163,14 @@ class Response:
         size = fast(count)
         return np.asarray(irfft(rfft(course, size) * rfft(self.answer, size), size)[:count]) * STEP
 
+    def moved(self, course: Course) -> Array:
+        """Return the change of force or gap by a course to its end, as nobody knows what follows; by 0 until calm."""
+        sampled = course.sampled()
+        return self.change(sampled)[: len(sampled) - 1 if course.acceleration[-1] else None]
+
     def course(self, course: Course, sign: float, opening: float) -> float:
         """Return the factor of a course that fails, with a sign."""
-        change = self.change(course.padded(self.settling()).sampled())
+        change = self.moved(course.padded(self.settling()))
         return self.reserve / max(float(-stays(sign * change, opening).min()), 1e-12)
 
 

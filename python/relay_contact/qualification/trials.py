@@ -452,7 +452,7 @@ def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
         return dip, float(bent / (BENT * STEP) ** 2 * lasting**2 / 8 / dip), at
 
     if whole.end <= SHORT:
-        dip, longer, _ = deepest(sign * response.change(whole.sampled()))
+        dip, longer, _ = deepest(sign * response.moved(whole))
         return [Piece(whole, response.reserve / dip, -lead, longer)]
     before, since = 2 * max(response.settling(), BEFORE), len(response.answer)
     if isinstance(course, Noise):
@@ -460,7 +460,7 @@ def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
         level *= sign
         level[: round(before / step)] = np.inf
     else:
-        level, step = stays(sign * response.change(whole.sampled()), lasting), STEP
+        level, step = stays(sign * response.moved(whole), lasting), STEP
     found = []
     # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
     for _ in range(2 * DIPS + 2 if isinstance(course, Noise) else DIPS):
