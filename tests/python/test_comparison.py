@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
-from relay_contact import Array, RelayContactError, write_table
+from relay_contact import Array, RelayContactError, comparison, write_table
 from relay_contact.command import main
 from relay_contact.comparison import compare
 
@@ -61,12 +62,20 @@ def test_a_chatter_log(run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[
     assert compare(run, log).rows[0] == ["count", "3", "0", ""]
 
 
-def test_a_measured_resistance(run: Path, tmp_path: Path) -> None:
-    log = tmp_path / "scope.csv"
+def test_a_measured_resistance(run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    log, figures = tmp_path / "scope.csv", list[Figure]()
     write_table(log, "time [ms],resistance [mOhm]", np.column_stack((1e3 * TIME, 1e3 * resistance(2e-4, 0.9))))
+    monkeypatch.setattr(comparison, "save", lambda figure, _: figures.append(figure))
     found = compare(run, log, out=tmp_path, shift=0.0)
     assert found.measured.start == pytest.approx(STARTS + 2e-4, abs=2e-6)
     assert found.rows[3][3] == "1.11"
+    # In ms and us.
+    course, durations = figures[0].axes
+    assert course.get_xlim() == pytest.approx((0, 10))
+    for number, own in enumerate((found.simulated, found.measured)):
+        assert np.array(course.lines[number].get_xydata()) == pytest.approx(np.stack((1e3 * TIME, own.resistance), 1))
+        drawn = np.stack((1e3 * own.start, 1e6 * own.duration), 1)
+        assert np.array(durations.lines[number].get_xydata()) == pytest.approx(drawn)
 
 
 def test_interruptions_between_the_values_of_a_run(tmp_path: Path) -> None:
