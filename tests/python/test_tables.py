@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from component import COMPONENT
-from relay_contact import RelayContactError, Scene, run, run_many, scenes
+from relay_contact import RelayContactError, Scene, comparison, run, run_many, scenes
 from relay_contact.figures import GRAVITY
 from relay_contact.identification.measurement import COLUMNS
 from relay_contact.identification.measurement import read as read_measurement
@@ -47,6 +47,15 @@ EXPORTS = {
     "names in a remark": "# travel [um],force [cN]\n" + PLAIN,
     "exponents": "travel [m],force [N]\n-5E-05,1.31e-1\n0,+.142\n5e-5,0.1515\n1e-4,.16\n1.5e-4,1.7E-01\n",
 }
+
+
+def test_units_are_those_of_their_prefixes() -> None:
+    prefixes = {"k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "n": 1e-9}
+    others = {"g": 9.80665, "gf": 9.80665e-3, "%": 1e-2}
+    columns = [*COLUMNS.values(), *INPUTS.values(), *comparison.COLUMNS.values()]
+    for name, factor in {pair for units in columns for pair in units.items()}:
+        prefixed = any(name[1:] in units for units in columns)
+        assert factor == pytest.approx(prefixes[name[0]] if prefixed else others.get(name, 1.0), rel=1e-15), name
 
 
 @pytest.mark.parametrize("name", EXPORTS)
