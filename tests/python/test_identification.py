@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import tomlkit
+from matplotlib.figure import Figure
 from scipy.stats import binom, t
 
 import measured
@@ -19,7 +20,8 @@ from identification_coverage import of_all, of_record, of_rough_curves, of_rough
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values, identification, write_table
 from relay_contact.command import main
-from relay_contact.identification import Identification
+from relay_contact.figures import save
+from relay_contact.identification import Identification, report
 from relay_contact.identification.measurement import Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.identification.relay_file import put
@@ -45,6 +47,13 @@ def test_what_a_laboratory_measures_gives_the_parameters(
 ) -> None:
     data = measured.files(tmp_path, measured.scattered(CLEAN, SEED))
     monkeypatch.setattr("relay_contact.scene.PATIENCE", 1e-3)
+    figures: list[Figure] = []
+
+    def kept(figure: Figure, path: Path) -> None:
+        figures.append(figure)
+        save(figure, path)
+
+    monkeypatch.setattr(report, "save", kept)
     assert main(["identify", "paper", "--data", *map(str, data.values()), "--out", str(tmp_path / "found")]) == 0
     printed, progress = capsys.readouterr()
     assert re.search(r"\d\d predictions of measurements", progress)
@@ -55,6 +64,13 @@ def test_what_a_laboratory_measures_gives_the_parameters(
     page = (tmp_path / "found/identification.html").read_text(encoding="utf-8")
     assert page.count("<svg") == 1
     assert (tmp_path / "found/identification.png").read_bytes().startswith(b"\x89PNG")
+    # In the units of the files, but for kHz, and a ring-down from its begin on; scatters of up to 3 %.
+    for axes, (name, file) in zip(np.array(figures[0].axes)[[0, 1, 4, 5]], data.items(), strict=True):
+        over, *_, values = np.loadtxt(file, delimiter=",", skiprows=2).T
+        over = {"ring": over - over[0], "chatter": 1e3 * over}.get(name, over)
+        points, curve = (np.array(line.get_xydata()) for line in axes.lines)
+        assert points == pytest.approx(np.stack((over, values), 1), rel=1e-6)
+        assert np.interp(over, *curve.T) == pytest.approx(values, abs=0.1 * np.abs(values).max())
     relay = Relay.read(tmp_path / "found/paper.toml", COMPONENT)
     assert set(relay.uncertainty) == set(measured.TRUTH)
     # Its covariance, which `qualify` draws from.
