@@ -289,7 +289,14 @@ def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
 
 def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
     sine = paper["vibration (sine)"].margin
-    sweep, *_ = plots.position_figures(list(paper), MILITARY.contacts)
+    sweep, *courses, wear = plots.position_figures(list(paper), MILITARY.contacts)
+    for figure, name in zip(courses, ("vibration (random), 214 G", "shock, 213 A"), strict=True):
+        time, course = (np.array(paper[name].margin.curves[each]) for each in ("time", "course"))
+        assert np.array(figure.axes[0].lines[0].get_xydata()) == pytest.approx(np.stack((1e3 * time, 100 * course), 1))
+        # The shock in the direction that opens the contact.
+        assert course.min() <= 0
+    worn = sine.wear["overtravel"], sine.wear["margin"]
+    assert np.array(wear.axes[0].lines[0].get_xydata()) == pytest.approx(np.transpose(worn) * (1e3, 1))
     level, left, length = (np.array(axes.lines[0].get_ydata()) for axes in sweep.axes)
     assert level.max() == pytest.approx(30)
     # Slowly shaken, nearly all of it in per cent of that at rest.
