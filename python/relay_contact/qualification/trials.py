@@ -470,8 +470,8 @@ def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
         near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
         dip, longer, own = deepest(sign * response.change(near)[since : len(near)])
         now = STEP * (first + own)
-        # Also of a course with steps longer than that, a point before the dip.
-        latest = max(0, np.searchsorted(whole.time, now, "right") - 1)
+        # Also of a course with steps longer than that, three points before the dip: it rises from the first.
+        latest = max(0, np.searchsorted(whole.time, now, "right") - 3)
         begin = float(whole.time[min(np.searchsorted(whole.time, now - 0.8 * before), latest)])
         part = whole.part(begin, now + lasting + AFTER)
         found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
