@@ -41,7 +41,7 @@ def history(path: Path, **entries: Any) -> Any:  # noqa: ANN401
     return test
 
 
-@pytest.mark.parametrize("shape", ["terminal-peak sawtooth", "trapezoid"])
+@pytest.mark.parametrize("shape", ["terminal-peak sawtooth", "initial-peak sawtooth", "trapezoid"])
 def test_pulses_open_the_contact_where_the_second_solution_does(shape: Any) -> None:  # noqa: ANN401
     """Of 3 ms, four periods of the contact: its own vibration counts."""
     test = Shock("a", "", READ, 50.0, 3e-3, shape)
