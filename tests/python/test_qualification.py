@@ -247,6 +247,9 @@ def test_margins_of_a_spring_of_segments_by_finite_elements(tmp_path: Path) -> N
         assert part.margin == pytest.approx(slow, rel=0.02)
         assert tested.verdict == "pass"
         assert part.chance.effects["contact.overtravel"] == pytest.approx(0.05, rel=0.01)
+        # Of a rivet that is known to 2 %, and lowers the margin.
+        heavier = by_elements({**values, "tip.mass": 1.01 * COMPONENT.value(values, "tip.mass")}, stiffness)
+        assert part.chance.effects["tip.mass"] == pytest.approx(2 * abs(heavier(1.0) / force(1.0)) - 2, rel=0.05)
 
 
 def test_margins_over_the_overtravel(paper: Assessment) -> None:
