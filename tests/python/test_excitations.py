@@ -307,7 +307,7 @@ def oscillator(natural: float, quality: float, stiff: bool = False) -> Response:
 
 def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     response = oscillator(300.0, 5.0)
-    test = Random("a", "", READ, ((50.0, 0.01), (1000.0, 0.01)), 3.08, 60.0, sines=((200.0, 3.0), (330.0, 1.0)))
+    test = Random("a", "", READ, ((50.0, 0.01), (1000.0, 0.01)), 3.08, 60.0, sines=((330.0, 1.0), (900.0, 60.0)))
     change = response.change(noise(test)[0].sampled())
     peaks = np.sort(-change[1:-1][(change[1:-1] < change[:-2]) & (change[1:-1] < change[2:])])
     for crossed in (280, 100):
