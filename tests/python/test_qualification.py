@@ -39,8 +39,8 @@ SINE = next(test for test in MILITARY.tests if isinstance(test, Sine))
 RANDOM = next(test for test in MILITARY.tests if isinstance(test, Random))
 
 
-def largest_dip(frequency: Array, gains: list[complex]) -> float:
-    """Return what is exceeded within 15 min of RANDOM with a chance of one half, of gains by frequency.
+def largest_dip(frequency: Array, gains: list[complex], chance: float = 0.5) -> float:
+    """Return what is exceeded within 15 min of RANDOM with a chance, of gains by frequency.
 
     By Rice, with the clumps of E. H. Vanmarcke, Journal of Applied Mechanics 42 (1975) 215.
     """
@@ -52,7 +52,7 @@ def largest_dip(frequency: Array, gains: list[complex]) -> float:
         return float(900 * np.sqrt(second / power) * np.exp(-(dip**2) / 2)
                      * (1 - np.exp(-np.sqrt(2 * np.pi) * width**1.2 * dip)))  # fmt: skip
 
-    return float(np.sqrt(power) * brentq(lambda dip: expected(dip) - np.log(2), 1.0, 10.0))
+    return float(np.sqrt(power) * brentq(lambda dip: expected(dip) + np.log1p(-chance), 1.0, 10.0))
 
 
 @pytest.fixture(scope="module")
@@ -541,7 +541,11 @@ def test_a_relay_without_uncertainties_has_no_interval(tmp_path: Path, capsys: p
     assert "states neither uncertain parameters nor an allowance" in page
     (_, noise), (_, shock), *_ = pd.read_csv(tmp_path / "qualification.csv").iterrows()
     assert shock[["low", "high", "chance", "chance low", "chance high"]].isna().all()
-    assert noise["low"] < noise["margin"] < noise["high"]
+    # By the chance of the largest dip alone.
+    frequency = np.linspace(50.0, 2000.0, 400)
+    gains = [SPECIMEN.force_response(f) for f in frequency]
+    low, middle, high = (largest_dip(frequency, gains, chance) for chance in (0.025, 0.5, 0.975))
+    assert noise[["low", "high"]].tolist() == pytest.approx(noise["margin"] * middle / np.array((low, high)), rel=3e-3)
 
 
 @pytest.mark.parametrize("resistance", ["PowerLaw", "Holm", "Barber"])
