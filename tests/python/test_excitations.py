@@ -204,7 +204,7 @@ def test_a_record_of_coarse_steps_does_not_pass(tmp_path: Path, capsys: pytest.C
     # The Fourier transform of a triangle, by which straight lines are between samples.
     lost = 100 * (1 - np.sinc(resonance / 6e3) ** 2)
     for name, told in (("rate 6000", f"{lost:.3g} % off a vibration there"), ("calm", "taken as s"),
-                       ("rate 3000", "2.21 in a period of the resonance"),
+                       ("rate 3000", "up to 333 µs, 2.21 in a period of the resonance"),
                        ("rate 1000", "fewer than 4 do not show what excites it")):  # fmt: skip
         (note,) = [note for note in found["notes"][name].split("; ") if told in note]
         assert f"{name}.csv: {note}\n" in printed

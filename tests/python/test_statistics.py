@@ -46,6 +46,14 @@ def test_distributions_by_name(entries: Any, ends: tuple[float, float]) -> None:
     assert Distribution(part=0.9).factor(np.array(-9.0), 2.0) == 0.01
 
 
+def test_a_sample_is_in_the_unit_of_its_parameter_and_of_an_entry_has_factors() -> None:
+    parts = (0.8, 0.9, 1.1, 1.2, 1.3)
+    samples = {"contact.overtravel": tuple(2e-4 * part for part in parts), "spring.stiffness": parts}
+    uncertain = {name: Distribution(distribution="data", values=values) for name, values in samples.items()}
+    median = placed(described({}, uncertain), SLOW).drawn(np.zeros(2))
+    assert median == {name: pytest.approx(values[2]) for name, values in samples.items()}
+
+
 def slow_shock(names: tuple[str, ...], coefficient: float = 0.0) -> tuple[Position, float]:
     """Return a position of a relay with correlated uncertainties under a slow shock, and the margin, linear."""
     rows = tuple(tuple(1.0 if one == other else coefficient for other in names) for one in names)
