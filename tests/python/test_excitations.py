@@ -321,6 +321,11 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     assert deepest.guess == pytest.approx(response.reserve / peaks[-1], rel=0.01)
     bare, tiny = replace(test, sines=()), replace(test, sines=((200.0, 1e-6),))
     assert response.random(tiny, 0.0) == pytest.approx(response.random(bare, 0.0), rel=1e-4)
+    # Of a tone that is much faster than the noise: the largest of both.
+    slow = replace(test, density=((5.0, 0.01), (10.0, 0.01)), rms=0.2236, duration=2.0, sines=((900.0, 60.0),))
+    alone, both = (response.reserve / response.random(each, 0.0, 0.999) for each in (replace(slow, sines=()), slow))
+    tone = 60 * G * np.interp(900.0, response.frequency, response.gain)
+    assert both == pytest.approx(alone + tone, rel=1e-9)
     # Of a narrow band in the shortest test: not even one crossing may be expected.
     short = replace(test, density=((300.0, 0.01), (302.0, 0.01)), rms=0.1414, duration=10 / 300)
     least, middle, most = (response.random(short, 0.0, chance) for chance in (1e-6, 0.5, 1 - 1e-6))

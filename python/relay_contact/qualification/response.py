@@ -127,7 +127,7 @@ class Response:
         def of(swells: float) -> float:
             return float(np.sqrt(-2 * np.log(-np.expm1(np.log1p(-chance) / swells))))
 
-        dip = single = of(1 + mean * test.duration)
+        dip = of(1 + mean * test.duration)
         for _ in range(SWELLS):
             dip = of(1 - mean * test.duration * np.expm1(-np.sqrt(2 * np.pi) * width**1.2 * dip))
         largest = rms * dip
@@ -147,9 +147,11 @@ class Response:
             # It takes long to import.
             from scipy.optimize import brentq
 
-            # In a swell they cross at phases that differ: each of these counts.
-            crossed = brentq(excess, rms, size.sum() + rms * (single + 1)) if excess(rms) > 0 else rms
-            largest = min(crossed, largest + size.sum())
+            # In a swell they cross at phases that differ: each of these counts, up to the largest of both together.
+            largest += size.sum()
+            if excess(largest) < 0:
+                least = min(rms, largest)
+                largest = brentq(excess, least, largest) if excess(least) > 0 else least
         return float(needed / largest)
 
     def change(self, course: Array) -> Array:
