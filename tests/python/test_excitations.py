@@ -133,10 +133,11 @@ def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
     assert whole.follow(CALM, 1.0015 * min(found))[0]
 
 
-@pytest.mark.parametrize("step", [1e-2, 5e-3])
-def test_the_margin_of_a_record_of_long_steps_is_that_of_the_whole(step: float) -> None:
-    """Longer than what is around a dip: what rises from 0 there had taken away what makes it."""
-    course = Course(step * np.arange(100), 50 * np.random.default_rng(1).standard_normal(100))
+@pytest.mark.parametrize(("step", "gap"), [(1e-2, 0.0), (5e-3, 0.0), (1e-2, 0.5)])
+def test_the_margin_of_a_record_of_long_steps_is_that_of_the_whole(step: float, gap: float) -> None:
+    """Longer than what is around a dip: what rises from 0 there had taken away what makes it. Also before a gap."""
+    values = 50 * np.random.default_rng(1).standard_normal(100)
+    course = Course(step * np.arange(100) + gap * (np.arange(100) > values.argmin()), values)
     level = min(piece.threshold(CALM, 1.0)[0] for piece in pieces(CALM, course, 1.0))
     whole = Piece(course.padded(CALM.response.settling()), level, 0.0)
     assert level == pytest.approx(whole.threshold(CALM, 1.0)[0], rel=2e-4)

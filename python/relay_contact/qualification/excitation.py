@@ -145,7 +145,7 @@ class Course:
         time, acceleration = self.time[first : last + 1], self.acceleration[first : last + 1]
         if not first:
             return Course(time - time[0], acceleration)
-        since = np.minimum((time - time[0]) / (0.2 * (time[-1] - time[0])), 1.0)
+        since = np.minimum((time - time[0]) / (0.2 * (end - time[0])), 1.0)
         return Course(time - time[0], (1 - np.cos(np.pi * since)) / 2 * acceleration)
 
 
