@@ -409,7 +409,11 @@ def test_a_dwell_at_resonance_and_steps_have_the_margins_of_the_sweep() -> None:
     steps = Sine("a", "", READ, 30.0, None, steps=(200.0, float(own[0]), 2000.0))
     assert response.sine(steps, LASTING)[1].min() == pytest.approx(factor[0], rel=1e-3)
     assert sweep.rate == pytest.approx(2 * np.log2(30), rel=1e-12)
-    assert replace(sweep, sweep_time=None, sweep_rate=1.0).rate == 1.0
+    fast, width = replace(sweep, sweep_time=None, sweep_rate=1000.0), response.bandwidth(float(own[0]))
+    assert fast.rate == 1000.0
+    # In this time a vibration decays by so many factors e.
+    crossed = f" {three(0.06 * np.log2(1 + width / own[0]) * np.pi * width)} decay times"
+    assert judgement.bound(response, fast, float(own[0])).endswith(crossed)
 
 
 @pytest.mark.parametrize(

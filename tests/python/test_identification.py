@@ -246,6 +246,17 @@ def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
     assert 1.1 < factors.max() < 1.3
 
 
+def test_a_response_is_that_after_hundreds_of_periods_if_it_takes_them() -> None:
+    values: Values = {**measured.TRUTH, **measured.AWAY, "beam.stiffnessDamping": 2e-6}
+    resonance = np.array([pole(values)[1] / (2 * np.pi)])
+    data = Measurement(
+        Path("a.csv"), "frequency response", resonance, "displacement", "m", resonance, np.ones(1), is_open=True
+    )
+    exact = abs(Reference(values).compliances(2 * np.pi * resonance[0], 0.0)[1])
+    # A quality of some 300; the frequency is that of the component to 1e-6 of it.
+    assert Laboratory(COMPONENT).predict(data, values) == pytest.approx(exact, rel=1e-3)
+
+
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
 def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     force, ring = measured.record(0.25, 1e4, 0.01, SEED)
