@@ -7,6 +7,9 @@ use std::{env, fs};
 
 use anyhow::{Context, Result, bail, ensure};
 
+/// Arguments of cargo's lint after the packages.
+pub const LINT: [&str; 4] = ["--all-targets", "--", "-D", "warnings"];
+
 /// The project's top folder: that of the package which cargo runs, or the current one.
 pub fn root() -> PathBuf {
     // At run time, so that a copy of the project with its `target` folder uses its own files.

@@ -5,8 +5,7 @@ use std::iter;
 
 use anyhow::Result;
 
-use crate::commands::{cargo, is_there, run as run_command};
-use crate::test::LINT;
+use crate::commands::{LINT, cargo, is_there, run as run_command};
 use crate::{fmu, importers, python};
 
 /// The message where Chromium is missing.

@@ -3,13 +3,10 @@
 use std::process::Command;
 use std::{env, thread};
 
-use crate::commands::{cargo, is_there, output, run as run_command, stage};
+use crate::commands::{LINT, cargo, is_there, output, run as run_command, stage};
 use anyhow::{Result, anyhow, bail};
 
 use crate::{fmu, importers, python, report, valgrind, wheel};
-
-/// Arguments of cargo's lint after the packages.
-pub const LINT: [&str; 4] = ["--all-targets", "--", "-D", "warnings"];
 
 #[derive(clap::Args, Clone, Copy)]
 pub struct Arguments {
