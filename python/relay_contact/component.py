@@ -301,10 +301,15 @@ def unload(functions: FMU2Functions, instances: list[Reused]) -> None:
 def default_component() -> Component:
     """Return the component that is used where none is given, which has told no warning yet.
 
-    It is unpacked once for all runs, which takes as long as many of them, and anew once its file has changed.
+    It is unpacked once for all runs, which takes as long as many of them; anew once its file has changed, or its folder
+    is gone, as after a process forked from this one has ended.
     """
     path = fmu_path()
-    component = unpacked(path, path.stat().st_mtime_ns if path.is_file() else 0)
+    changed = path.stat().st_mtime_ns if path.is_file() else 0
+    component = unpacked(path, changed)
+    if not component.folder.is_dir():
+        unpacked.cache_clear()
+        component = unpacked(path, changed)
     component.told.clear()
     return component
 

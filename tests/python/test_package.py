@@ -95,6 +95,9 @@ def test_runs_without_a_component_have_one_until_its_file_changes(
     assert not folder.exists()
     if sys.platform == "linux":
         assert str(folder) not in Path("/proc/self/maps").read_text(encoding="utf-8")
+    # Somebody has tidied up.
+    shutil.rmtree(default_component().folder)
+    assert default_component().folder.is_dir()
 
 
 def test_the_command_runs_a_scene_as_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
