@@ -20,11 +20,12 @@ from relay_contact.command import main
 from relay_contact.figures import three
 from relay_contact.files import read_toml
 from relay_contact.qualification import Relay, Standard, judgement, plots, qualify, synthesis, trials
+from relay_contact.qualification.courses import Piece, eased, middle_dip, noise, pieces
 from relay_contact.qualification.excitation import STEP, Course, Random, Shock, Sine, Spectrum
 from relay_contact.qualification.page import UNKNOWN
 from relay_contact.qualification.response import Response, respond
 from relay_contact.qualification.standards import Recorded
-from relay_contact.qualification.trials import Piece, Specimen, Weakest, eased, middle_dip, noise, pieces, sine_near
+from relay_contact.qualification.trials import Specimen, Weakest, sine_near
 from relay_contact.qualification.words import COARSE, limits
 
 G = 9.80665

@@ -18,6 +18,7 @@ from relay_contact.figures import GRAVITY, three
 from relay_contact.many import side_by_side
 from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, judgement, qualify
 from relay_contact.qualification import position as positions
+from relay_contact.qualification.courses import pieces
 from relay_contact.qualification.distributions import Distribution
 from relay_contact.qualification.excitation import STEP, History, Random, Shock, Sine
 from relay_contact.qualification.excitation import Test as Asked
@@ -28,7 +29,7 @@ from relay_contact.qualification.parts import CLOSED, CONTACT
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.response import kept, respond, stays
 from relay_contact.qualification.results import Chance
-from relay_contact.qualification.trials import Specimen, Weakest, pieces, sine_least, steady
+from relay_contact.qualification.trials import Specimen, Weakest, sine_least, steady
 from relay_contact.qualification.words import failures, passes_text, tighten
 from relay_contact.records import Record
 

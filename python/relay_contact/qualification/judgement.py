@@ -10,6 +10,7 @@ from relay_contact.figures import GRAVITY as G
 from relay_contact.figures import three
 from relay_contact.files import RelayContactError
 from relay_contact.qualification import synthesis
+from relay_contact.qualification.courses import SHORT, Piece
 from relay_contact.qualification.distributions import LIMITS
 from relay_contact.qualification.excitation import (  # fmt: skip
     DIRECTIONS,
@@ -30,7 +31,7 @@ from relay_contact.qualification.position import WORN, Drawn, Position
 from relay_contact.qualification.relay import NORMAL
 from relay_contact.qualification.response import FLIES, Response
 from relay_contact.qualification.results import Finding, Margin, PartMargin, Verdict
-from relay_contact.qualification.trials import SHORT, SHOWN, Piece, Specimen, Weakest, sine_threshold, sine_tried, sweep
+from relay_contact.qualification.trials import SHOWN, Specimen, Weakest, sine_threshold, sine_tried, sweep
 from relay_contact.records import ATTENUATED
 
 MANY = 10_000

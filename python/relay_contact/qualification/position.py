@@ -12,7 +12,7 @@ import numpy as np
 
 from relay_contact.component import Array, Component, Values
 from relay_contact.many import side_by_side
-from relay_contact.qualification import statistics, trials
+from relay_contact.qualification import courses, statistics, trials
 from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, quantile
 from relay_contact.qualification.excitation import Random, Sine, Test, Transient
 from relay_contact.qualification.level import MOST, ROUGHLY, threshold
@@ -138,17 +138,19 @@ class Position:
         return trials.Specimen(self.component, self.values, self.contacts, self.shared.nominal[self.part], self.part)
 
     @cached_property
-    def pieces(self) -> dict[str, dict[str, list[trials.Piece]]]:
+    def pieces(self) -> dict[str, dict[str, list[courses.Piece]]]:
         """Of each course, by the test's name and its directions: as a whole, or what is around its largest dips."""
         return {
-            test.name: {way: trials.pieces(self.specimen, test.course(), sign) for way, sign in test.directions.items()}
+            test.name: {
+                way: courses.pieces(self.specimen, test.course(), sign) for way, sign in test.directions.items()
+            }
             for test in self.tests if isinstance(test, Transient)
         }  # fmt: skip
 
     @cached_property
-    def noises(self) -> dict[str, tuple[list[trials.Piece], float]]:
+    def noises(self) -> dict[str, tuple[list[courses.Piece], float]]:
         """Of each noise, by the test's name: what is around its largest dips, and what clipping makes of its level."""
-        return {test.name: trials.noise_dips(self.specimen, test) for test in self.tests if isinstance(test, Random)}
+        return {test.name: courses.noise_dips(self.specimen, test) for test in self.tests if isinstance(test, Random)}
 
     def is_endless(self, test: Test) -> bool:
         """Return whether a test hardly shakes the part."""
@@ -273,9 +275,9 @@ class Position:
         return {test.name: trials.sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
 
     @cached_property
-    def middle(self) -> dict[str, tuple[float, list[str], trials.Piece]]:
+    def middle(self) -> dict[str, tuple[float, list[str], courses.Piece]]:
         """Of each noise, by the test's name: at which part of linear theory it fails, what fails, and the dip."""
-        return {name: trials.middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
+        return {name: courses.middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
 
     def turn(self, test: Test, number: int, expected: float) -> float:
         """Return the logarithm of the level that fails in the component in a draw by that of linear theory.

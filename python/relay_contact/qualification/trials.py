@@ -1,20 +1,19 @@
-"""The tests as the component runs them: steady vibration, and courses over time."""
+"""The component in tests: what it observes, steady vibration and sweeps; `courses` has the others."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache, partial
-from threading import Lock
-from typing import Any, NamedTuple
+from functools import cache, cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
 from relay_contact.component import Array, Component, Contact, Values, sine
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
-from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, Sine, overall, straight
+from relay_contact.qualification.excitation import Sine
 from relay_contact.qualification.level import MOST, Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, STOP, Part, Rest, at_rest, parts
-from relay_contact.qualification.response import Response, fast, stays
+from relay_contact.qualification.response import Response
 from relay_contact.qualification.standards import Contacts
 
 TOLERANCE = 1e-4  # solver.tolerance, which levels feel by less than their resolution
@@ -37,17 +36,6 @@ ORDERS = (2, 3, 4, 5)
 """Multiples of a frequency that may resonate where it does not."""
 CROSSING, SLOWEST = 1.0, 10.0
 """Times of settling for which it crosses a width, and all that it takes at most."""
-
-# A long course, such as a record or random vibration, is simulated around its largest dips of force or gap.
-SHORT = 0.25  # s, up to which a course is simulated as a whole
-DIPS = 3
-BEFORE, AFTER = 5e-3, 2e-3  # s, of a dip, at least
-BENT = 5  # steps to either side, by which a dip is bent
-RECORD = 60.0  # s, of random vibration
-SAMPLE = 2e-5  # s
-EVENLY = 16  # times at which its change is known in a period of its highest frequency
-SEED = 1
-RANKS = 30  # dips of noise by which it is told what clipping does to the largest
 
 
 INTERRUPTIONS = ("chatter.count", "chatter.totalInterruption", "chatter.longestInterruption")
@@ -373,217 +361,3 @@ def followed(specimen: Specimen, test: Sine, first: float, order: int, least: We
         return least
     level, failed = threshold(lambda factor: run(factor)[:2], min(guess, level))
     return Weakest(run(level)[2], level, failed, order)
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A course, or what of it is around a dip, and the factor of its level that fails by linear theory."""
-
-    course: Course
-    guess: float
-    begin: float
-    """Time (s) of the whole course at which it begins."""
-    longer: float = 0.0
-    """Part of its level by which what fails is above a touch, by linear theory."""
-
-    def follow(self, specimen: Specimen, factor: float, points: int = 0) -> tuple[Lengths, Array, float]:
-        """Run it at a factor of its level; return the longest failures, rows of what is observed, `Specimen.ahead`.
-
-        Their first column is the time (s); there are so many at least. A course that ends at 0 is observed until calm.
-        """
-        course = self.course
-        values = {**course.generator, **({"excitation.amplitude": factor * course.acceleration.max()}
-                                         if course.generator else {})}  # fmt: skip
-        time, acceleration = course.time, factor * course.acceleration
-        if not acceleration[-1]:
-            end = max(3 * course.end, course.end + specimen.response.settling())
-            time, acceleration = np.append(time, end), np.append(acceleration, 0.0)
-        if course.generator and not specimen.sampled:
-            # It needs no points to be exact.
-            time = np.unique([0.0, course.end, time[-1]])
-            acceleration = np.zeros(len(time))
-        if points or specimen.sampled:
-            dense = np.linspace(0.0, min(3 * course.end, time[-1]), points + 1)
-            if specimen.sampled:
-                every = STEP * np.arange(1, time[-1] / STEP)
-                # Not beside points of the course that rounding alone sets apart.
-                near = np.searchsorted(time, every - STEP / 4) < np.searchsorted(time, every + STEP / 4)
-                dense = np.union1d(dense, every[~near])
-            dense = np.setdiff1d(dense, time)
-            at = np.searchsorted(time, dense)
-            acceleration = np.insert(acceleration, at, np.interp(dense, time, acceleration))
-            time = np.insert(time, at, dense)
-        with specimen.start(values) as contact, contact.explained():
-            course_ = {} if course.generator else {"base.acceleration": acceleration}
-            rows = contact.drive(time, course_, specimen.watched)
-            taken = np.diff(time) > 0
-            lengths = specimen.longest(contact) | specimen.leaving(np.diff(time)[taken], rows)
-            observed = specimen.observed(rows)
-            ahead = specimen.ahead(contact, lengths, observed[:, 1:].min(axis=0), self.longer)
-        return lengths, np.column_stack((time[1:][taken], observed)), ahead
-
-    def tried(self, specimen: Specimen, sign: float) -> Tried:
-        """Return what tells what of the part fails, by factors of its level, with a sign."""
-
-        def tried(factor: float) -> tuple[Lengths, float]:
-            lengths, _, ahead = self.follow(specimen, sign * factor)
-            return specimen.own(lengths), ahead
-
-        return tried
-
-    def threshold(
-        self, specimen: Specimen, sign: float, failing: Lengths | None = None, guess: float = 0.0
-    ) -> tuple[float, list[str]]:
-        """Return the factor of its level that fails with a sign, and what of the part."""
-        return threshold(self.tried(specimen, sign), guess or self.guess, failing)
-
-
-def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
-    """Return a course as a whole if it is short, else what is around its largest dips, by linear theory."""
-    response, lasting = specimen.response, specimen.lasting
-    whole = course if isinstance(course, Noise) else course.padded(response.settling())
-    lead = whole.end - course.end
-
-    def deepest(change: Array) -> tuple[float, float, int]:
-        level = stays(change, lasting)
-        at, last = int(level.argmin()), len(change) - 1
-        dip = max(float(-level[at]), 1e-12)
-        bent = change[max(at - BENT, 0)] - 2 * change[at] + change[min(at + BENT, last)]
-        return dip, float(bent / (BENT * STEP) ** 2 * lasting**2 / 8 / dip), at
-
-    if whole.end <= SHORT:
-        dip, longer, _ = deepest(sign * response.moved(whole))
-        return [Piece(whole, response.reserve / dip, -lead, longer)]
-    before, since = 2 * max(response.settling(), BEFORE), len(response.answer)
-    if isinstance(course, Noise):
-        level, step = course.change(response)
-        level *= sign
-        level[: round(before / step)] = np.inf
-    else:
-        level, step = stays(sign * response.moved(whole), lasting), STEP
-    found = []
-    # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
-    for _ in range(2 * DIPS + 2 if isinstance(course, Noise) else DIPS):
-        at = int(level.argmin())
-        first, last = (round((step * at + each) / STEP) for each in (-before / 2, before / 2))
-        time = STEP * np.arange(first - since, last)
-        near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
-        dip, longer, own = deepest(sign * response.change(near)[since : len(near)])
-        now = STEP * (first + own)
-        # Also of a course with steps longer than that, three points before the dip: it rises from the first.
-        latest = max(0, np.searchsorted(whole.time, now, "right") - 3)
-        begin = float(whole.time[min(np.searchsorted(whole.time, now - 0.8 * before), latest)])
-        part = whole.part(begin, now + lasting + AFTER)
-        found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
-        level[max(0, at - round(before / step)) : at + round(before / step)] = np.inf
-    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:DIPS]]
-
-
-@dataclass(frozen=True)
-class Noise(Course):
-    """A record of random acceleration, which might be repeated."""
-
-    spectrum: Any = None
-    """Its Fourier transform, straight between samples as it is, in parts of the number of samples; up to the frequency
-    from which on it has nothing that a contact feels."""
-
-    def change(self, response: Response) -> tuple[Array, float]:
-        """Return the change of force or gap at even times by linear theory, and how far (s) these are apart."""
-        frequency = np.arange(len(self.spectrum)) / RECORD
-        count = fast(EVENLY * len(frequency))
-        changed = self.spectrum * np.interp(frequency, response.frequency, response.transfer)
-        return np.fft.irfft(changed, count, norm="forward"), RECORD / count
-
-
-def noise(test: Random) -> tuple[Noise, Noise]:
-    """Return a record of random acceleration as it is before and after clipping; the same for all positions."""
-    with MAKING:
-        return record(test.density, test.clipping, test.sines)
-
-
-MAKING = Lock()
-"""One position makes the record that all others wait for."""
-
-
-@lru_cache(maxsize=1)
-def record(
-    density: tuple[Breakpoint, ...], clipping: float | None, sines: tuple[tuple[float, float], ...]
-) -> tuple[Noise, Noise]:
-    """Return a record of random acceleration as it is before and after clipping.
-
-    It is the sum of sines a sixtieth of a Hz apart with normally distributed amplitudes, and of the sines of the test
-    with any phases; between samples it is linear, for which the amplitudes are raised.
-    """
-    count = round(RECORD / SAMPLE)
-    generator = np.random.default_rng(SEED)
-    top = BAND[1] if clipping else max(density[-1][0], *(tone for tone, _ in sines), 0.0)
-    lines = np.arange(int(top * RECORD) + 1) / RECORD
-    real, imaginary = generator.standard_normal((2, count // 2 + 1))[:, : len(lines)]
-    amplitude = np.sqrt(G**2 * straight(density, lines) / (4 * RECORD))
-    known, between = amplitude * (real + 1j * imaginary), np.sinc(lines * SAMPLE) ** 2
-    time = np.arange(float(count))
-    time *= SAMPLE
-    acceleration = np.fft.irfft(known / between, count, norm="forward")
-    if not (clipping or sines):
-        return (Noise(time, acceleration, spectrum=known),) * 2
-    tones = np.zeros(count)
-    for (tone, level), phase in zip(sines, generator.uniform(0, 2 * np.pi, len(sines)), strict=True):
-        tones += G * level / np.sinc(tone * SAMPLE) ** 2 * np.sin(2 * np.pi * tone * time + phase)
-    most = G * overall(density) * (clipping or np.inf)
-    found = [
-        Noise(time, course, spectrum=np.fft.rfft(course, norm="forward")[: len(lines)] * between)
-        for course in (acceleration + tones, *([np.clip(acceleration, -most, most) + tones] if clipping else []))
-    ]
-    return found[0], found[-1]
-
-
-def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str], Piece]:
-    """Return at which part of the level of linear theory the contacts fail, and which, in the middle of three dips.
-
-    That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
-    """
-    # A search begins with the level that was just tried.
-    trials = {piece.begin: cache(piece.tried(specimen, 1.0)) for piece in dips}
-
-    def sought(piece: Piece, part: float) -> tuple[float, list[str], Piece]:
-        level, failed = threshold(trials[piece.begin], piece.guess * part)
-        return level / piece.guess, failed, piece
-
-    def fails(piece: Piece, part: float) -> bool:
-        return bool(trials[piece.begin](piece.guess * part)[0])
-
-    one, other, third = dips
-    first = sought(one, 1.0)
-    weaker = fails(other, first[0])
-    if fails(third, first[0]) != weaker:
-        return first
-    second = sought(other, first[0])
-    return second if fails(third, second[0]) == weaker else sought(third, second[0])
-
-
-def noise_dips(specimen: Specimen, test: Random) -> tuple[list[Piece], float]:
-    """Return what is around the largest dips of a record of noise, and the part by which clipping raises the level."""
-    free, clipped = noise(test)
-    return pieces(specimen, clipped, 1.0), eased(specimen, test, free, clipped) if test.clipping else 1.0
-
-
-def eased(specimen: Specimen, test: Random, free: Noise, clipped: Noise) -> float:
-    """Return by which part clipping raises the level that fails in the time of a test.
-
-    The largest dips of a record with and without it, by rank, are on a line, which is followed to the largest dip in
-    the time of the test: where the contact resonates it has a slope near 1, as many clipped peaks make a dip, and where
-    it follows the acceleration its slope is 0.
-    """
-    # It takes long to import.
-    from scipy.signal import find_peaks
-
-    response = specimen.response
-    sizes = []
-    for course in (free, clipped):
-        change, step = course.change(response)
-        peaks, _ = find_peaks(-change, distance=max(1, round(1 / response.moments(test)[1] / step)))
-        sizes.append(np.sort(-change[peaks])[-RANKS:])
-    slope, _ = np.polyfit(sizes[0], sizes[1], 1)
-    largest = response.reserve / response.random(test, 0.0)
-    dip = sizes[1].mean() + float(np.clip(slope, 0.0, 1.0)) * (largest - sizes[0].mean())
-    return float(max(largest / dip, 1.0))
