@@ -295,6 +295,16 @@ def test_a_contact_may_fail_where_a_multiple_of_the_frequency_resonates(armature
     assert "2 times this frequency resonates" in found.limits
 
 
+def test_a_contact_that_resonates_above_all_that_is_known_has_a_margin() -> None:
+    """At 12.9 kHz; a response is known up to 10 kHz, where a sweep may end."""
+    values: Values = {"beam.length": 5e-3, "tip.mass": 1e-6, "beam.stiffnessDamping": 5e-6}
+    test = Sine("sine", "", READ, 30.0, None, (1000.0, 10000.0), sweep_rate=1.0)
+    specimen = Specimen(COMPONENT, values, CONTACTS, respond(COMPONENT, values, CONTACTS.threshold))
+    found = sine_least(specimen, test)
+    level = found.factor * 30 * GRAVITY
+    assert [bool(steady(specimen, found.frequency, part * level, True)[0]) for part in (0.99, 1.01)] == [False, True]
+
+
 @pytest.mark.parametrize("top", [2150.0, 2250.0])
 def test_a_draw_may_fail_elsewhere_than_the_relay_as_its_file_says(top: float) -> None:
     """That fails where the range ends, or a sweep follows its resonance down; a thicker one also does the other.

@@ -81,7 +81,7 @@ class Response:
 
     def bandwidth(self, frequency: float) -> float:
         """Return the width (Hz) of a resonance at half of its power."""
-        at = int(np.searchsorted(self.frequency, frequency))
+        at = min(int(np.searchsorted(self.frequency, frequency)), len(self.frequency) - 1)
         low = self.gain < self.gain[at] / np.sqrt(2)
         below, above = np.flatnonzero(low[:at]), np.flatnonzero(low[at:])
         first = below[-1] if len(below) else 0
