@@ -334,7 +334,10 @@ def test_crossings_of_noise_with_sines_are_those_of_a_record() -> None:
     assert 0 < least < middle < most < np.inf
     # Of a band of three lines of the response, which are half a Hz apart.
     narrow = replace(short, density=((300.0, 0.01), (301.0, 0.01)), rms=0.1)
-    assert response.moments(narrow)[0] == pytest.approx(0.1 * G * response.gain[601], rel=0.01)
+    rms, mean, width = response.moments(narrow)
+    assert (rms, mean) == pytest.approx((0.1 * G * response.gain[601], 300.5), rel=0.01)
+    # Of an even band: its length over the root of 12.
+    assert width == pytest.approx(1 / 300.5 / 12**0.5, rel=0.01)
 
 
 @pytest.mark.parametrize("quality", [3.0, 30.0, 100.0])

@@ -29,6 +29,8 @@ PHASES = 1024
 """Combinations of the phases of sines on noise, over which the rate of crossings is averaged."""
 SWELLS = 8
 """Times that the largest dip of noise is put into the number of swells that it follows from."""
+NARROW, LINES = 50.0, 1000
+"""Band (Hz) of noise below which its lines are closer than those of the response, and their number."""
 WATCHED, LONGEST = 1000, 200_000  # steps: an answer ends after some of at most
 LONG = 2**20  # steps of a course, from which on it is convolved in pieces
 CALM = 1e-6  # part of its largest force
@@ -104,10 +106,13 @@ class Response:
 
         Third is how wide its spectrum is about its centre, in parts of the mean frequency.
         """
-        density = test.spectrum(self.frequency)
-        # Of a narrow band few lines are within, which have all of its power.
-        powers = density / density.sum() * (G * overall(test.density)) ** 2 * self.gain**2
-        power, first, second = (float((powers * self.frequency**order).sum()) for order in range(3))
+        low, high = test.density[0][0], test.density[-1][0]
+        # A narrow band has lines of its own, as few of these are within.
+        frequency = np.linspace(low, high, LINES) if high - low < NARROW else self.frequency
+        density = test.spectrum(frequency)
+        gain = np.interp(frequency, self.frequency, self.gain)
+        powers = density / density.sum() * (G * overall(test.density)) ** 2 * gain**2
+        power, first, second = (float((powers * frequency**order).sum()) for order in range(3))
         return power**0.5, (second / power) ** 0.5, max(1 - first**2 / (power * second), 0.0) ** 0.5
 
     def random(
