@@ -10,6 +10,7 @@ from scipy.spatial.distance import cdist
 from scipy.stats import norm, qmc
 
 from qualified import described, placed
+from relay_contact import Values
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.distributions import LIMITS, Correlation, Distribution
 from relay_contact.qualification.excitation import Shock
@@ -101,6 +102,34 @@ def test_what_the_component_finds_beside_linear_theory_is_where_it_found_it(monk
     # What the model leaves out is a part of the margin, with 95 % confidence.
     allowed = replace(position, model=Model("one", {}, 0.1)).margins(test, 1.0, False).margins / linear.margins
     assert np.quantile(allowed, LIMITS) == pytest.approx((0.9, 1.1), abs=4e-3)
+
+
+def test_an_interval_is_the_same_part_of_any_margin() -> None:
+    """Of 4e-4, too: draws had counted as 1e-3 at least."""
+    position, margin = slow_shock(("contact.overtravel",))
+    hard = replace(position, tests=(replace(SLOW, acceleration=1e5),))
+    part = SLOW.acceleration / 1e5
+    drawn = hard.margins(hard.tests[0], part * margin).margins
+    assert drawn == pytest.approx(part * position.margins(SLOW, margin).margins, rel=1e-3)
+
+
+def test_a_parameter_matters_beside_one_whose_end_fails_at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first does as much as the second up to where that ends: the component tells of both."""
+    values: Values = {"effects.pusher": "Prescribed", "pusher.position": 9e-3, "pusher.displacement": 2.86e-4,
+                      "contact.overtravel": -5e-4}  # fmt: skip
+    uncertain = {"pusher.position": Distribution(part=0.1), "pusher.displacement": Distribution(part=0.5)}
+    position = placed(described(values, uncertain), SLOW)
+    sought: set[int] = set()
+
+    def turn(_: Position, _test: Asked, number: int, expected: float) -> float:
+        sought.add(number)
+        return expected
+
+    monkeypatch.setattr(Position, "turn", turn)
+    position.margins(SLOW, position.linear(position.specimen.response, SLOW))
+    left = position.surfaces[SLOW.name].left
+    assert list(left[1:5] > 0) == [True, True, True, False]
+    assert sought >= {1, 2, 3, 4}
 
 
 def test_a_chance_in_ppm_with_its_interval(monkeypatch: pytest.MonkeyPatch) -> None:

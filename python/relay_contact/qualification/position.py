@@ -39,8 +39,8 @@ SETTLED = 1e-3
 """Part of its largest answer below which that of a drawn contact is cut off."""
 GRID = np.linspace(-5.0, 5.0, 41)
 """Scores of the chance of the largest dip."""
-LOWEST = 1e-3
-"""Margin that a draw counts as at least, as the logarithm of one that fails at rest would be endless."""
+LOWEST = 1e-300
+"""Margin in place of that of a draw that fails at rest, whose logarithm would be endless."""
 FAR = -9e-3
 """Overtravel (m) of a contact that is out of reach."""
 STILL = 1e-9
@@ -352,7 +352,10 @@ class Position:
         if count and confirmed:
             if self.drawn(surface.scores[0]) != self.nominal:
                 middle = self.turn(test, 0, middle)
-            upper, lower, drawn = np.split(surface.values[1:], (count, 2 * count))
+            drawn = surface.values[1 + 2 * count :]
+            # An end that fails at rest would hide all others.
+            known = np.where(surface.left > 0, surface.values, surface.values[0])
+            upper, lower, _ = np.split(known[1:], (count, 2 * count))
             effects = np.abs(upper - lower)
             matter = (effects > 0) & (effects >= MATTERS * effects.max())
             for number in range(count):
