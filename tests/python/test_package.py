@@ -1,10 +1,12 @@
 """The package `relay_contact`: runs of scenes, and what it says about wrong names and values."""
 
 import gc
+import mmap
 import os
 import re
 import shutil
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from zipfile import ZipFile
@@ -98,6 +100,21 @@ def test_runs_without_a_component_have_one_until_its_file_changes(
     # Somebody has tidied up.
     shutil.rmtree(default_component().folder)
     assert default_component().folder.is_dir()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the memory of this process is read from /proc")
+@pytest.mark.parametrize("own", [lambda: None, Component])
+def test_the_memory_of_many_runs_is_that_of_some(own: Callable[[], Component | None]) -> None:
+    """2 MB had stayed of each."""
+
+    def taken(runs: int) -> float:
+        for _ in range(runs):
+            run("at-rest", component=own())
+        gc.collect()
+        return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * mmap.PAGESIZE / 2**20
+
+    begin = taken(5)
+    assert taken(10) < begin + 5.0
 
 
 def test_the_command_runs_a_scene_as_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
