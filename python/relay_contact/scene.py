@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 from relay_contact.component import Array, Component, Contact, Value, default_component, nearest, units, warnings_kept
 from relay_contact.files import RelayContactError, at_once, named, scenes
-from relay_contact.schema import Nested, Positive, Table, at, leaves, read, refused, variables
+from relay_contact.schema import Nested, Positive, Table, at, lacking, leaves, read, refused, variables
 from relay_contact.tables import ACCELERATIONS, CURRENTS, LENGTHS, RATIOS, TIMES, Units
 from relay_contact.tables import read as read_columns
 
@@ -180,14 +180,24 @@ class Scene:
                 told.append(f"inputs: {text}: between communication points inputs are linear, choose shorter steps")
         return told
 
+    def idle(self, component: Component) -> list[str]:
+        """Return in words which values are not used, as nothing says whether the scene has what uses them."""
+        values = component.named(self.values)
+        told = []
+        for name in values.keys() & component.variables.keys():
+            needed = lacking(component, name, [values]) if values[name] != component.start(name) else ""
+            if needed and needed.partition(" ")[0] not in values:
+                told.append(f"{name} = {values[name]}: not used without {needed}")
+        return sorted(told)
+
     @contextmanager
     def started(self, component: Component, points: Array) -> Iterator[tuple[Contact, dict[str, Array]]]:
-        """Give an instance at the begin of the run, which warns of what is lost of the table, and the inputs."""
+        """Give an instance at the begin of the run, which warns of what it does not use, and the inputs."""
         uncovered, inputs = self.uncovered(), self.inputs(points)
         remarks = uncovered + self.missed(points, inputs)
         first = {name: float(course[0]) for name, course in inputs.items()}
         with component.started(self.values | first) as contact, contact.explained():
-            for text in remarks:
+            for text in remarks + self.idle(component):
                 contact.keep(fmi2Warning, text)
             yield contact, inputs
 

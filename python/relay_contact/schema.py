@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from relay_contact.component import Component, Contact, Value, nearest
+from relay_contact.component import Component, Contact, Value, Values, nearest
 from relay_contact.files import RelayContactError, read_toml, shown
 from relay_contact.spring import SPRING_FILES
 
@@ -23,6 +23,15 @@ WORDS = {
     "valid ": "",
 }
 """Of pydantic, and those for them in an error."""
+SWITCHES = {
+    "second.": ("effects.secondContact",), "parallel.": ("effects.parallelContact",), "fixed.": ("fixed.file",),
+    "friction.": ("effects.friction", "Coulomb"), "tip.contactHeight": ("effects.friction", "Coulomb"),
+    "contact.stiffness": ("effects.contactLaw", "Rough"), "beam.axialForce": ("effects.axialForce", "Prescribed"),
+    "pusher.": ("effects.pusher", "Prescribed", "Armature"), "armature.": ("effects.pusher", "Armature"),
+    "pusher.displacement": ("effects.pusher", "Prescribed"), "coil.relativeCurrent": ("effects.pusher", "Armature"),
+    "excitation.": ("effects.excitation", "Sine", "LogSweep", "HalfSine", "Random"),
+}  # fmt: skip
+"""By the beginning of the names of parameters and inputs, the longest last: what they are not used without."""
 Place = tuple[str | int, ...]
 """Keys and indices from the top of a file to an entry."""
 Model = TypeVar("Model")
@@ -166,6 +175,16 @@ def variables(
                     value = contact.component.choice({name: value}, name)
             values[name] = value
     return values
+
+
+def lacking(component: Component, name: str, known: list[Values]) -> str:
+    """Return what a parameter is not used without, if all of some sets of parameters lack it."""
+    switch, *on = next((own for start, own in reversed(SWITCHES.items()) if name.startswith(start)), (name,))
+    if switch == name:
+        return ""
+    if any(component.choice(values, switch) in on if on else values.get(switch) for values in known):
+        return ""
+    return f"{switch} = {' or '.join(on)}" if on else switch
 
 
 def exact(component: Component, name: str, kind: str) -> str:

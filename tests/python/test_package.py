@@ -58,6 +58,23 @@ def test_an_input_course_is_linear_between_its_points() -> None:
     assert np.abs(driven - exact).max() / (np.ptp(exact) / 2) < (2 * np.pi * 1e-2) ** 2 / 8
 
 
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"excitation_amplitude": 300.0}, ["excitation.amplitude = 300.0: not used without effects.excitation = Sine"]),
+        ({"excitation_amplitude": 300.0, "effects_excitation": 2.0}, []),
+        ({"friction_coefficient": 0.3}, ["friction.coefficient = 0.3: not used without effects.friction = Coulomb"]),
+        # Who says so knows it.
+        ({"friction_coefficient": 0.3, "effects_friction": "None"}, []),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
+def test_a_value_that_nothing_uses_is_told(changes: Any, told: list[str]) -> None:  # noqa: ANN401
+    """An amplitude without an excitation: nothing moved, without a word."""
+    found = run("at-rest", component=COMPONENT, **changes).warnings
+    assert [text[: len(begin)] for text, begin in zip(found, told, strict=True)] == told
+
+
 def test_an_unknown_scene_is_answered_with_those_there_are() -> None:
     with pytest.raises(
         RelayContactError, match="no scene of this name; there are armature-shock, at-rest, changeover-make"

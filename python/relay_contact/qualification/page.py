@@ -15,10 +15,11 @@ from relay_contact.qualification.assessment import springs_of
 from relay_contact.qualification.excitation import LEVELS, evidence_told
 from relay_contact.qualification.parts import MOVED, NONE, PUSHER
 from relay_contact.qualification.position import DRAWS, FEWEST
-from relay_contact.qualification.relay import Relay, lacking
+from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.results import Assessment, Tested
 from relay_contact.qualification.standards import Standard
 from relay_contact.qualification.words import HEAD, REASONS, at_rest, reasons, rows, time_text
+from relay_contact.schema import lacking
 from relay_contact.spring import SPRING_FILES, by_modes
 
 FILLS = {"pass": "#BFE5D8", "FAIL": "#F5CDB8", "undecided": "#FBE8B0", "not judged": "#E4E4E4"}

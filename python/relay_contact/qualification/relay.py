@@ -35,14 +35,6 @@ OF_THE_POSITION = {
     "pusher.displacement": ("Prescribed", "where the pusher stays"),
 }
 """Inputs that say where the parts are, the same in all tests; each needed by one choice of effects.pusher, as what."""
-SWITCHES = {
-    "second.": ("effects.secondContact",), "parallel.": ("effects.parallelContact",), "fixed.": ("fixed.file",),
-    "friction.": ("effects.friction", "Coulomb"), "tip.contactHeight": ("effects.friction", "Coulomb"),
-    "contact.stiffness": ("effects.contactLaw", "Rough"), "beam.axialForce": ("effects.axialForce", "Prescribed"),
-    "pusher.": ("effects.pusher", "Prescribed", "Armature"), "armature.": ("effects.pusher", "Armature"),
-    **{name: ("effects.pusher", kind) for name, (kind, _) in OF_THE_POSITION.items()},
-}  # fmt: skip
-"""By the beginning of the names of parameters, the longest last: what they are not used without."""
 HALF, STEP, FURTHER = 10, 1e-5, 1e-4
 """Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
 
@@ -177,15 +169,6 @@ class Relay:
         )  # fmt: skip
 
 
-def lacking(component: Component, name: str, known: list[Values]) -> str:
-    """Return what a parameter is not used without, if some positions by some models all lack it."""
-    switch, *on = next((own for start, own in reversed(SWITCHES.items()) if name.startswith(start)), (name,))
-    found = (values.get(switch, component.start(switch)) for values in known)
-    if switch == name or any(each in on if on else each for each in found):
-        return ""
-    return f"{switch} = {' or '.join(on)}" if on else switch
-
-
 def check_used(path: Path, content: Content, component: Component, known: list[list[Values]]) -> None:
     """Refuse a parameter of a part that the relay does not have where it is given: without a word it would be without.
 
@@ -201,7 +184,7 @@ def check_used(path: Path, content: Content, component: Component, known: list[l
     ]  # fmt: skip
     for place, table, where in tables:
         for name, keys, value in schema.leaves(table):
-            if needed := lacking(component, name, where):
+            if needed := schema.lacking(component, name, where):
                 raise schema.refused(path, (*place, *keys), value, f"not used without {needed}")
 
 
