@@ -168,7 +168,8 @@ def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> 
             raise RelayContactError(f"{where}: {told}: not allowed, allowed is {what}")
     if np.ptp(values) == 0:
         told = f"{values[0]:g} m/s2 all the time"
-        raise RelayContactError(f"{where}: {told}: not allowed, allowed are values that differ")
+        another = "[[history]] in the file of a standard may name another channel"
+        raise RelayContactError(f"{where}: {told}: not allowed, allowed are values that differ; {another}")
     return Record(path, channel.name, time, values, clock)
 
 
@@ -251,6 +252,10 @@ def mat(path: Path) -> Iterator[Channel]:
     for name, value in vectors.items():
         if name.lower() not in TIME:
             yield Channel(name, "", time, value, "")
+    for name, value in found.items():
+        if isinstance(value, np.ndarray) and min(value.shape) > 1:
+            # Which of its columns are what, nothing says.
+            yield Channel(name, "a matrix", time, value, "")
 
 
 READERS: dict[str, Callable[[Path], Iterator[Channel]]] = {

@@ -135,6 +135,8 @@ def test_files_of_measuring_programs(tmp_path: Path) -> None:
         assert record.time == pytest.approx(TIME, abs=1e-9), name
         assert record.acceleration == pytest.approx(factor * VALUES, rel=1e-6, abs=1e-9), name
         assert ("time without a unit, taken as s" in record.notes) == (name == "road.mat"), name
+    savemat(tmp_path / "matrix.mat", {"t": TIME, "Z": VALUES, "axes": np.ones((400, 3))})
+    assert read(tmp_path / "matrix.mat", unit="g")[0].others == ("axes (a matrix)",)
     for suffix in ("uff", "tdms"):
         with pytest.raises(RelayContactError, match=r"channel Z: time in min: not allowed, allowed is s, ms, us"):
             read(tmp_path / f"roadmin.{suffix}")
