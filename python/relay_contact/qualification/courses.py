@@ -9,14 +9,24 @@ import numpy as np
 
 from relay_contact.component import Array
 from relay_contact.figures import GRAVITY as G
-from relay_contact.qualification.excitation import BAND, STEP, Breakpoint, Course, Random, overall, straight
+from relay_contact.qualification.excitation import (  # fmt: skip
+    BAND,
+    STEP,
+    Breakpoint,
+    Course,
+    Random,
+    Shock,
+    Transient,
+    overall,
+    straight,
+)
 from relay_contact.qualification.level import Lengths, Tried, threshold
-from relay_contact.qualification.response import Response, fast, stays
-from relay_contact.qualification.trials import Specimen
+from relay_contact.qualification.response import FLIES, Response, fast, stays
+from relay_contact.qualification.trials import APART, Specimen
 
 # A long course, such as a record or random vibration, is simulated around its largest dips of force or gap.
 SHORT = 0.25  # s, up to which a course is simulated as a whole
-DIPS = 3
+DIPS, MOST_DIPS = 3, 100
 BEFORE, AFTER = 5e-3, 2e-3  # s, of a dip, at least
 BENT = 5  # steps to either side, by which a dip is bent
 RECORD = 60.0  # s, of random vibration
@@ -89,8 +99,11 @@ class Piece:
         return threshold(self.tried(specimen, sign), guess or self.guess, failing)
 
 
-def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
-    """Return a course as a whole if it is short, else what is around its largest dips, by linear theory."""
+def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0) -> list[Piece]:
+    """Return a course as a whole if it is short, else what is around its largest dips, by linear theory.
+
+    Those apart from each other, or up to a hundred of all that fail at a factor of its level.
+    """
     response, lasting = specimen.response, specimen.lasting
     whole = course if isinstance(course, Noise) else course.padded(response.settling())
     lead = whole.end - course.end
@@ -112,11 +125,13 @@ def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
         level[: round(before / step)] = np.inf
     else:
         level, step = stays(sign * response.moved(whole), lasting), STEP
-    found = []
+    found: list[tuple[float, Piece]] = []
     # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
-    for _ in range(2 * DIPS + 2 if isinstance(course, Noise) else DIPS):
+    count = MOST_DIPS if failing else 2 * DIPS + 2 if isinstance(course, Noise) else DIPS
+    around = AFTER if failing else before
+    while len(found) < count and (not failing or -level.min() * failing > response.reserve):
         at = int(level.argmin())
-        first, last = (round((step * at + each) / STEP) for each in (-before / 2, before / 2))
+        first, last = (round((step * at + each) / STEP) for each in (-around / 2, around / 2 + lasting))
         time = STEP * np.arange(first - since, last)
         near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
         dip, longer, own = deepest(sign * response.change(near)[since : len(near)])
@@ -124,10 +139,23 @@ def pieces(specimen: Specimen, course: Course, sign: float) -> list[Piece]:
         # Also of a course with steps longer than that, three points before the dip: it rises from the first.
         latest = max(0, np.searchsorted(whole.time, now, "right") - 3)
         begin = float(whole.time[min(np.searchsorted(whole.time, now - 0.8 * before), latest)])
-        part = whole.part(begin, now + lasting + AFTER)
+        # Far from linear theory a contact may fail some periods after a dip by it.
+        part = whole.part(begin, now + lasting + (2 * AFTER if failing else AFTER), lasting)
         found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
-        level[max(0, at - round(before / step)) : at + round(before / step)] = np.inf
-    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:DIPS]]
+        level[max(0, at - round(around / step)) : at + round(around / step)] = np.inf
+    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[: MOST_DIPS if failing else DIPS]]
+
+
+def further(specimen: Specimen, test: Transient, level: float, linear: float) -> list[tuple[str, Piece]]:
+    """Return what is around all dips that fail at a level by linear theory, by direction, the largest first.
+
+    Where that is off, others than its largest may fail first: none where it is not, or far off, or of a pulse.
+    """
+    if isinstance(test, Shock) or not APART < level / linear - 1 < 1 / FLIES:
+        return []
+    ways = test.directions.items()
+    found = [(way, each) for way, sign in ways for each in pieces(specimen, test.course(), sign, level)]
+    return sorted(found, key=lambda each: each[1].guess)[:MOST_DIPS]
 
 
 @dataclass(frozen=True)

@@ -139,13 +139,16 @@ class Course:
         twice = np.interp([time - 1e-6 * STEP, time + 1e-6 * STEP], self.time, self.acceleration, left=0.0, right=0.0)
         return np.asarray(twice.mean(axis=0))
 
-    def part(self, begin: float, end: float) -> "Course":
-        """Return what is from the time of a point to another time (s), its own points; over a fifth it rises from 0."""
+    def part(self, begin: float, end: float, lasting: float = 0.0) -> "Course":
+        """Return what is from the time of a point to another time (s), its own points.
+
+        It rises from 0 over a fifth of what is before the last of it, which lasts so long (s).
+        """
         first, last = np.searchsorted(self.time, (begin, end))
         time, acceleration = self.time[first : last + 1], self.acceleration[first : last + 1]
         if not first:
             return Course(time - time[0], acceleration)
-        since = np.minimum((time - time[0]) / (0.2 * (end - time[0])), 1.0)
+        since = np.minimum((time - time[0]) / (0.2 * (end - lasting - time[0])), 1.0)
         return Course(time - time[0], (1 - np.cos(np.pi * since)) / 2 * acceleration)
 
 

@@ -10,7 +10,7 @@ from relay_contact.figures import GRAVITY as G
 from relay_contact.figures import three
 from relay_contact.files import RelayContactError
 from relay_contact.qualification import synthesis
-from relay_contact.qualification.courses import SHORT, Piece
+from relay_contact.qualification.courses import MOST_DIPS, SHORT, Piece, further
 from relay_contact.qualification.distributions import LIMITS
 from relay_contact.qualification.excitation import (  # fmt: skip
     DIRECTIONS,
@@ -319,11 +319,20 @@ def transient_level(position: Position, test: Transient) -> tuple[Level, list[Ru
             lower, failed = each.threshold(specimen, ways[other], known, level)
             if lower < factor:
                 way, piece, factor, decides = other, each, lower, failed
+    others = further(specimen, test, factor, own[0][1].guess)
+    for other, each in others:
+        level = factor * (1 - RESOLUTION)
+        if known := specimen.own(each.follow(specimen, ways[other] * level)[0]):
+            way, piece = other, each
+            factor, decides = each.threshold(specimen, ways[other], known, level)
     start = test.record.time[0] if isinstance(test, History) else 0.0
     where, limits, weakest = words(position, test, way, piece, start)
     found = Level(factor, decides, own[0][1].guess, weakest, limits)
     if len(own) > len(ways):
+        position.decisive[test.name] = ways[way], piece
         found = sparing(found, min(specimen.response.course(each.course, ways[other], 0.0) for other, each in own))
+        untried = others[-1][1].guess if len(others) >= MOST_DIPS else factor
+        found = replace(found, sure=min(found.sure, untried / factor))
     return found, runs, piece, where, ways[way] * factor
 
 

@@ -97,6 +97,8 @@ class Position:
     axis: str = NORMAL
     part: str = CONTACT
     shared: Shared = field(default_factory=Shared, init=False, repr=False)
+    decisive: dict[str, tuple[float, courses.Piece]] = field(default_factory=dict, init=False, repr=False)
+    """Of long courses, by the test's name: the sign of its direction, and what is around the dip that fails first."""
 
     def named(self, test: Test) -> str:
         """Return what a test is of, in words."""
@@ -309,7 +311,8 @@ class Position:
             else:
                 assert isinstance(test, Transient)
                 ways = [(sign, each) for way, sign in test.directions.items() for each in self.pieces[test.name][way]]
-                sign, piece = min(ways, key=lambda way: response.course(way[1].course, way[0], lasting))
+                worst = min(ways, key=lambda way: response.course(way[1].course, way[0], lasting))
+                sign, piece = self.decisive.get(test.name, worst)
             tried = piece.tried(specimen, sign)
         level, failed = threshold(tried, linear * np.exp(expected), roughly=True)
         if isinstance(test, Sine):
@@ -317,6 +320,10 @@ class Position:
             if not test.steps and abs(level / linear - 1) > trials.APART:
                 found = trials.followed(specimen, test, first, 1, found, linear)
             level = trials.across(specimen, test, found, linear).factor
+        elif isinstance(test, Transient):
+            for way, each in courses.further(specimen, test, level, linear):
+                tried, least = each.tried(specimen, test.directions[way]), level * (1 - ROUGHLY)
+                level = threshold(tried, least, failing, roughly=True)[0] if (failing := tried(least)[0]) else level
         return float(np.log(level / linear))
 
     def dips(self, test: Test, scores: Array) -> Array:

@@ -187,8 +187,13 @@ def kept(frequency: Array | float, opening: float) -> Array:
 
 
 def stays(change: Array, opening: float) -> Array:
-    """Return the level below which a change stays for a time (s) from each step on, or the part that is linear."""
+    """Return the level below which a change stays for a time (s) from each step on, or the part that is linear.
+
+    A change that is shorter stays nowhere.
+    """
     dwell = max(1, round(opening / STEP))
+    if len(change) <= dwell:
+        return np.zeros(1)
     most, window = change, 1
     while 2 * window <= dwell + 1:
         most, window = np.maximum(most[:-window], most[window:]), 2 * window
