@@ -455,6 +455,11 @@ def test_an_uncertain_spring_of_the_fixed_contact_widens_the_interval(tmp_path: 
     assert result.value == pytest.approx(COMPONENT.value({}, "beam.youngsModulus"), rel=1e-6)
     share = fixed / (fixed - moving)
     assert result.by_others["fixed.spring.thickness"] == pytest.approx(3 * 0.02 * share, rel=0.01)
+    assert not any("`qualify`" in note for note in whole.notes)
+    # So uncertain that it is refused: the force goes with the cube of the length.
+    relay.write_text("uncertainty.beam.length = 0.5\n" + relay.read_text())
+    told = "beam.youngsModulus is known to ± 122 %, by what others leave open: `qualify` takes less than 100 %"
+    assert told in found(data, relay=relay, parameters=["beam.youngsModulus"]).notes
 
 
 def test_each_position_has_its_overtravel(tmp_path: Path) -> None:

@@ -257,6 +257,11 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         for i, one in enumerate(fit.unknowns) for j, other in enumerate(fit.unknowns[:i])
         if abs(correlation[i, j]) > TOGETHER
     ]  # fmt: skip
+    notes += [
+        f"{each.unknown.label} is known to ± {100 * each.half:.3g} %, by what others leave open: `qualify` takes less "
+        "than 100 %"
+        for each in found if each.half >= 1
+    ]  # fmt: skip
     for model in relay.models:
         # What `qualify` takes in place of what was found.
         if kept := sorted(model.parameters.keys() & names):
