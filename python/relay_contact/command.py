@@ -144,14 +144,16 @@ def write_parameters(given: argparse.Namespace) -> None:
 
 def qualify_relay(given: argparse.Namespace) -> None:
     """Test a relay by a standard or a measured record. Write verdicts, margins and intervals as a page and tables."""
+    # What is imported stays: garbage is sought in the rest.
+    gc.disable()
     from relay_contact.qualification import qualify
     from relay_contact.qualification.page import FILES, PDF, UNKNOWN
     from relay_contact.qualification.words import HEAD, MARKS, UNREAD, rows
 
     asked = Path(given.standard or (*given.history, "")[0]).stem
     folder = given.out or Path(f"qualification-{Path(given.relay).stem}-{asked}")
-    # What was imported stays: garbage is sought in the rest.
     gc.freeze()
+    gc.enable()
     found = qualify(
         given.relay, given.standard, out=folder, tests=given.test, history=given.history, unit=given.unit,
         rate=given.rate, quick=given.quick, workers=given.workers, cluster=given.cluster,

@@ -12,13 +12,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import tomlkit
-
 from relay_contact.files import RelayContactError, digest, read_toml, write_at_once
 
 PREFIX, FIXED = "spring.", "fixed.spring."
 OF_FILES = {"beam.file": PREFIX, "fixed.file": FIXED}
 """Beginnings of the names of entries, by the parameters that name their files."""
+BEGINNINGS = (PREFIX, FIXED)
 SPRING_FILES = tuple(OF_FILES)
 MODULUS = "youngs_modulus"
 WHOLE = "stiffness"
@@ -39,7 +38,7 @@ def by_modes(path: Path) -> bool:
 
 def is_entry(name: str) -> bool:
     """Return whether a name is that of an entry of a spring file."""
-    return name.startswith(tuple(OF_FILES.values()))
+    return name.startswith(BEGINNINGS)
 
 
 def entries(content: Any) -> dict[str, list[Place]]:  # noqa: ANN401
@@ -79,6 +78,9 @@ def text_of(file: str, factors: Mapping[str, float], modulus: float | None = Non
 
     Segments without Young's modulus get this one (Pa), if there is one.
     """
+    # It takes longer to import than a short simulation, and few change a spring.
+    import tomlkit
+
     content = tomlkit.parse(Path(file).read_text(encoding="utf-8-sig"))
     if modulus is not None:
         for segment in content.get("segment", []):

@@ -1,5 +1,6 @@
 """What an assessment showed: a finding for each test, position and model, and all of them as tables."""
 
+import csv
 from dataclasses import field
 from html import escape
 from pathlib import Path
@@ -140,6 +141,10 @@ FINDING = TypeAdapter(Finding)
 """For their files."""
 
 
+Rows = tuple[list[str], list[dict[str, Any]], dict[str, str]]
+"""Columns of a table, its rows, and the units of its columns."""
+
+
 @dataclass(frozen=True)
 class Tested:
     """A test in a position of the coil, by all models."""
@@ -200,6 +205,15 @@ class Assessment:
     @property
     def table(self) -> "pd.DataFrame":
         """A row for each test, position and model, and for each test not run; `attrs["units"]` has the units."""
+        return frame(*self.verdicts())
+
+    @property
+    def sweeps(self) -> "pd.DataFrame":
+        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
+        return frame(*self.vibrations())
+
+    def verdicts(self) -> Rows:
+        """Return what is in `table`."""
         rows: list[dict[str, Any]] = []
         units: dict[str, str] = {}
         for tested in self.tests:
@@ -225,11 +239,10 @@ class Assessment:
         known = *MARGINS.values(), *LEAST.values(), "notes"
         others = [name for name in known if any(name in row for row in rows)]
         columns = [*FIELDS, *NUMBERS, *(name for name in others if name not in NUMBERS)]
-        return frame(columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"})
+        return columns, rows, units | dict.fromkeys(TIMES.values(), "s") | {"resonance": "Hz"}
 
-    @property
-    def sweeps(self) -> "pd.DataFrame":
-        """A row for each frequency of each sine, at the level of the test; `attrs["units"]` has the units."""
+    def vibrations(self) -> Rows:
+        """Return what is in `sweeps`."""
         rows: list[dict[str, Any]] = []
         for each in (each for tested in self.tests for each in tested.models):
             if each.kind == "sine" and each.judged:
@@ -243,15 +256,20 @@ class Assessment:
         keys = ["position", "test", "model", "frequency", "acceleration", *TIMES.values(), *CONTACTS, *others]
         units = {"frequency": "Hz", "acceleration": "m/s2", **dict.fromkeys(TIMES.values(), "s"),
                  **{LEAST[name]: UNITS[name] for name in LEAST}}  # fmt: skip
-        return frame(keys, rows, units)
+        return keys, rows, units
 
     def write(self) -> None:
         """Write both tables as CSV, with the units in the names of their columns."""
-        for name, table in (("qualification.csv", self.table), ("sweeps.csv", self.sweeps)):
-            units = table.attrs["units"]
-            head = [f"{column} [{units[column]}]" if column in units else column for column in table.columns]
-            with at_once(self.folder / name) as part:
-                table.to_csv(part, header=head, index=False, float_format="%.9g", lineterminator="\n")
+        for name, (columns, rows, units) in (
+            ("qualification.csv", self.verdicts()), ("sweeps.csv", self.vibrations()),
+        ):  # fmt: skip
+            with at_once(self.folder / name) as part, part.open("w", encoding="utf-8", newline="") as file:
+                # Not by pandas, which takes longer to import than a short qualification to compute.
+                lines = csv.writer(file, lineterminator="\n")
+                lines.writerow(f"{column} [{units[column]}]" if column in units else column for column in columns)
+                for row in rows:
+                    cells = (row.get(column, "") for column in columns)
+                    lines.writerow(f"{cell:.9g}" if isinstance(cell, float) else cell for cell in cells)
 
     def _repr_html_(self) -> str:
         """Return the page for a notebook, apart from the notebook's own style."""
