@@ -155,12 +155,22 @@ def margins(tests: list[Tested]) -> Figure:
     axes.set_ylim(len(judged) - 0.4, -0.6)
     axes.axvline(1.0, color=GREY, linewidth=1)
     low, high = axes.get_xlim()
-    low, high = axes.set_xlim(min(low, 0.5), max(high, 2.0))
-    digits = (1, 2, 5) if high < 1e3 * low else (1,)
-    ticks = [tick for power in range(-3, 4) for digit in digits if low < (tick := digit * 10.0**power) < high]
-    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    axes.set_xticks([], minor=True)
+    axes.set_xlim(min(low, 0.5), max(high, 2.0))
+    ticked(axes)
     return figure
+
+
+def ticked(axes: Axes) -> None:
+    """Set the numbers of a logarithmic scale: 1, 2 and 5 of each decade, or decades alone if there are over three.
+
+    Other ticks would take as long to draw as curves; a scale with less than two of these has matplotlib's.
+    """
+    low, high = axes.get_xlim()
+    digits = (1, 2, 5) if high < 1e3 * low else (1,)
+    ticks = [tick for power in range(-3, 5) for digit in digits if low < (tick := digit * 10.0**power) < high]
+    if len(ticks) > 1:
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_xticks([], minor=True)
 
 
 def above(axes: Axes, title: str) -> None:
@@ -216,7 +226,7 @@ def sweeps(rows: list[Axes], findings: list[Finding], contacts: Contacts) -> Non
     length.set(ylabel="duration [µs]", xlabel="frequency [Hz]")
     for axes in rows:
         axes.set_xscale("log")
-        axes.xaxis.set_major_formatter("{x:g}")
+        ticked(axes)
         axes.tick_params(labelbottom=axes is length)
 
 
