@@ -203,6 +203,9 @@ class Component:
     def number(self, name: str, value: Value) -> float:
         """Return the number that stands for a value of a variable; a value of another type is refused."""
         kind = self.variables[name].type
+        if type(value) is float and kind == "Real" and abs(value) <= LARGEST_REAL:
+            # As most are, and soon told.
+            return value
         choices = self.choices(name) if kind == "Enumeration" else {}
         if isinstance(value, np.bool_ | np.floating):
             # Of a column of a table: a truth is no number there, and the largest number of single precision is smaller.
@@ -397,15 +400,21 @@ class Contact:
 
     def set(self, name: str, value: Value) -> None:
         """Set a parameter or an input."""
-        name = self.component.name(name)
-        kind = self.component.variables[name].type
-        if kind == "String":
-            if not isinstance(value, str):
+        self.set_all({name: value})
+
+    def set_all(self, values: Values) -> None:
+        """Set parameters and inputs, those of a type in one call: each takes longer than what it sets."""
+        by_type: dict[str, dict[int, Value]] = {}
+        for given, value in values.items():
+            name = self.component.name(given)
+            variable = self.component.variables[name]
+            kind = "Integer" if variable.type == "Enumeration" else variable.type
+            if kind == "String" and not isinstance(value, str):
                 raise RelayContactError(f"{name} = {shown(value)}: not allowed, allowed is a text")
-            self.fmu.setString(self.references(name), [value])
-            return
-        put = getattr(self.fmu, f"set{'Integer' if kind == 'Enumeration' else kind}")
-        put(self.references(name), [self.component.number(name, value)])
+            own = value if kind == "String" else self.component.number(name, value)
+            by_type.setdefault(kind, {})[variable.valueReference] = own
+        for kind, known in by_type.items():
+            getattr(self.fmu, f"set{kind}")([*known], [*known.values()])
 
     def change(self, name: str, begin: float, end: float, length: float) -> None:
         """Have an input change linearly over the next step, of this length."""
@@ -484,8 +493,7 @@ class Contact:
             self.changed_files = {
                 str(own[name]): str(values[name]) for name in OF_FILES if own.get(name) and own[name] != values[name]
             }
-            for name, value in own.items():
-                self.set(name, value)
+            self.set_all(own)
             self.initialise()
         self.tell()
 

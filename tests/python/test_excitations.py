@@ -129,7 +129,7 @@ def test_the_margin_of_a_record_is_that_of_the_whole(tmp_path: Path) -> None:
         last = np.interp(piece.begin + piece.course.end, course.time, course.acceleration)
         assert piece.course.acceleration[-1] == pytest.approx(last)
     found = [piece.threshold(CALM, 1.0)[0] for piece in around]
-    whole = Piece(course.padded(CALM.response.settling()), 1.0, 0.0)
+    whole = Piece(course.padded(CALM.response.settling), 1.0, 0.0)
     assert not whole.follow(CALM, 0.9985 * min(found))[0]
     assert whole.follow(CALM, 1.0015 * min(found))[0]
 
@@ -140,7 +140,7 @@ def test_the_margin_of_a_record_of_long_steps_is_that_of_the_whole(step: float, 
     values = 50 * np.random.default_rng(1).standard_normal(100)
     course = Course(step * np.arange(100) + gap * (np.arange(100) > values.argmin()), values)
     level = min(piece.threshold(CALM, 1.0)[0] for piece in pieces(CALM, course, 1.0))
-    whole = Piece(course.padded(CALM.response.settling()), level, 0.0)
+    whole = Piece(course.padded(CALM.response.settling), level, 0.0)
     assert level == pytest.approx(whole.threshold(CALM, 1.0)[0], rel=2e-4)
 
 

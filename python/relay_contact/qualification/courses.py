@@ -57,7 +57,7 @@ class Piece:
                                          if course.generator else {})}  # fmt: skip
         time, acceleration = course.time, factor * course.acceleration
         if not acceleration[-1]:
-            end = max(3 * course.end, course.end + specimen.response.settling())
+            end = max(3 * course.end, course.end + specimen.response.settling)
             time, acceleration = np.append(time, end), np.append(acceleration, 0.0)
         if course.generator and not specimen.sampled:
             # It needs no points to be exact.
@@ -105,7 +105,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0
     Those apart from each other, or up to a hundred of all that fail at a factor of its level.
     """
     response, lasting = specimen.response, specimen.lasting
-    whole = course if isinstance(course, Noise) else course.padded(response.settling())
+    whole = course if isinstance(course, Noise) else course.padded(response.settling)
     lead = whole.end - course.end
 
     def deepest(change: Array) -> tuple[float, float, int]:
@@ -118,7 +118,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0
     if whole.end <= SHORT:
         dip, longer, _ = deepest(sign * response.moved(whole))
         return [Piece(whole, response.reserve / dip, -lead, longer)]
-    before, since = 2 * max(response.settling(), BEFORE), len(response.answer)
+    before, since = 2 * max(response.settling, BEFORE), len(response.answer)
     if isinstance(course, Noise):
         level, step = course.change(response)
         level *= sign

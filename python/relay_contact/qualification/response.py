@@ -12,7 +12,7 @@ linear: whatever fails first does so at its own level.
 """
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from numpy.fft import fft, ifft, irfft, rfft
@@ -72,13 +72,14 @@ class Response:
     slowest: float = 0.0
     """Time (s) after which all of the relay has settled."""
 
-    @property
+    @cached_property
     def gain(self) -> Array:
         """Magnitude of the transfer function, N per m/s2."""
         return np.abs(self.transfer)
 
+    @cached_property
     def settling(self) -> float:
-        """Return the time (s) after which less than a thousandth of a vibration is left, in all of the relay."""
+        """The time (s) after which less than a thousandth of a vibration is left, in all of the relay."""
         return max(settled(self.answer), self.slowest)
 
     def bandwidth(self, frequency: float) -> float:
@@ -177,7 +178,7 @@ class Response:
 
     def course(self, course: Course, sign: float, opening: float) -> float:
         """Return the factor of a course that fails, with a sign."""
-        change = self.moved(course.padded(self.settling()))
+        change = self.moved(course.padded(self.settling))
         return self.reserve / max(float(-stays(sign * change, opening).min()), 1e-12)
 
 

@@ -190,7 +190,7 @@ def vibrated(
     specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float] = SOON
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
-    settling = max(2.0, specimen.response.settling() * frequency)
+    settling = max(2.0, specimen.response.settling * frequency)
     rising, steadily = (int(np.ceil(part * settling)) for part in start)
     time = (rising + steadily) / frequency
     with specimen.start(sine(frequency, amplitude, rising / frequency)) as contact, contact.explained():
@@ -236,7 +236,7 @@ def swept(
     the frequency whose multiple resonates, as the force of a contact that is not linear has harmonics.
     """
     response = specimen.response
-    width, settling = response.bandwidth(order * frequency) / order, response.settling()
+    width, settling = response.bandwidth(order * frequency) / order, response.settling
     high, low = min(frequency + ABOVE * width, test.band[1]), max(FALLS * frequency, test.band[0])
     lasting = settling * (1 + min(CROSSING * (high - low) / width, SLOWEST))
     # Of the excitation: without a limit 0.
