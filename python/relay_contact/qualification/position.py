@@ -318,8 +318,8 @@ class Position:
         if isinstance(test, Sine):
             found = trials.Weakest(frequency, level, failed)
             if not test.steps and abs(level / linear - 1) > trials.APART:
-                found = trials.followed(specimen, test, first, 1, found, linear)
-            level = trials.across(specimen, test, found, linear).factor
+                found = trials.followed(specimen, test, first, 1, found, linear, roughly=True)
+            level = trials.across(specimen, test, found, linear, roughly=True).factor
         elif isinstance(test, Transient):
             for way, each in courses.further(specimen, test, level, linear):
                 tried, least = each.tried(specimen, test.directions[way]), level * (1 - ROUGHLY)

@@ -18,7 +18,7 @@ from relay_contact.qualification.standards import Contacts
 
 TOLERANCE = 1e-4  # solver.tolerance, which levels feel by less than their resolution
 GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
-WATCHED = 10  # periods
+WATCHED = 10  # periods, or those that are not forgotten at the next one
 GENTLY, SOON, AT_ONCE = (1.0, 1.0), (0.4, 1.3), (0.0, 1.0)
 """Times in which a vibration rises, and for which it goes on until the start is forgotten, in those that it takes to
 settle. Soon: with less swing off the resonance, where only the level matters that fails."""
@@ -190,13 +190,13 @@ def vibrated(
     specimen: Specimen, frequency: float, amplitude: float, start: tuple[float, float] = SOON
 ) -> tuple[Lengths, list[float], float]:
     """Return what `steady` does, and `Specimen.ahead`."""
-    settling = max(2.0, specimen.response.settling * frequency)
+    settling = max(1.0, specimen.response.settling * frequency)
     rising, steadily = (int(np.ceil(part * settling)) for part in start)
     time = (rising + steadily) / frequency
     with specimen.start(sine(frequency, amplitude, rising / frequency)) as contact, contact.explained():
         contact.step(0.0, time)
-        pieces = WATCHED * (SAMPLES if specimen.sampled else 1)
-        step = 1 / frequency * WATCHED / pieces
+        step = 1 / frequency / (SAMPLES if specimen.sampled else 1)
+        pieces = round(np.ceil(min(settling, WATCHED)) / frequency / step)
         steps = np.full(pieces, step)
         lengths, left, ahead = specimen.failing(contact, time + step * np.arange(pieces + 1.0), steps, frequency)
         return lengths, left.min(axis=0).tolist(), ahead
@@ -301,12 +301,12 @@ def sine_least(specimen: Specimen, test: Sine) -> Weakest:
     return across(specimen, test, least, float(factors[at]))
 
 
-def across(specimen: Specimen, test: Sine, least: Weakest, guess: float) -> Weakest:
+def across(specimen: Specimen, test: Sine, least: Weakest, guess: float, roughly: bool = False) -> Weakest:
     """Return where a slow sweep fails as a multiple of its frequency resonates, if below the least level so far."""
     natural, (low, high) = specimen.response.natural, test.band
     for multiple in ORDERS if high < natural and not test.steps else ():
         if low < natural / multiple < high / FALLS:
-            least = followed(specimen, test, natural / multiple, multiple, least, guess)
+            least = followed(specimen, test, natural / multiple, multiple, least, guess, roughly)
     return least
 
 
@@ -349,7 +349,9 @@ def sine_near(specimen: Specimen, test: Sine, first: float, guess: float) -> Wea
     return followed(specimen, test, first, 1, least, guess) if bends else least
 
 
-def followed(specimen: Specimen, test: Sine, first: float, order: int, least: Weakest, guess: float) -> Weakest:
+def followed(
+    specimen: Specimen, test: Sine, first: float, order: int, least: Weakest, guess: float, roughly: bool = False
+) -> Weakest:
     """Return where a slow sweep across a resonance fails, by its frequency and order, if below the least level so far.
 
     A gap, or the force of a stop, is not known in steps as long as those of a sweep.
@@ -359,5 +361,6 @@ def followed(specimen: Specimen, test: Sine, first: float, order: int, least: We
     run = cache(partial(swept, specimen, test, first, order=order))
     if between or not run(level)[0]:
         return least
-    level, failed = threshold(lambda factor: run(factor)[:2], min(guess, level))
-    return Weakest(run(level)[2], level, failed, order)
+    level, failed = threshold(lambda factor: run(factor)[:2], level, roughly=roughly)
+    # In draws only the level matters, which need not have been run.
+    return Weakest(first if roughly else run(level)[2], level, failed, order)
