@@ -394,7 +394,7 @@ def test_the_dip_of_a_record_that_fails_first_need_not_be_the_largest(length: fl
 
     def level(changed: Values) -> float:
         position = placed(described({**values, **changed}), test)
-        whole = Piece(test.course().padded(position.specimen.response.settling()), 1.0, 0.0)
+        whole = Piece(test.course().padded(position.specimen.response.settling), 1.0, 0.0)
         found = transient_level(position, test)[0].factor
         assert [bool(whole.follow(position.specimen, part * found)[0]) for part in (0.99, 1.01)] == [False, True]
         return found

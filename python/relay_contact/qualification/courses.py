@@ -31,7 +31,7 @@ BEFORE, AFTER = 5e-3, 2e-3  # s, of a dip, at least
 BENT = 5  # steps to either side, by which a dip is bent
 RECORD = 60.0  # s, of random vibration
 SAMPLE = 2e-5  # s
-EVENLY = 16  # times at which its change is known in a period of its highest frequency
+EVENLY = 8  # times at which its change is known in a period of its highest frequency
 SEED = 1
 RANKS = 30  # dips of noise by which it is told what clipping does to the largest
 
@@ -127,7 +127,7 @@ def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0
         level, step = stays(sign * response.moved(whole), lasting), STEP
     found: list[tuple[float, Piece]] = []
     # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
-    count = MOST_DIPS if failing else 2 * DIPS + 2 if isinstance(course, Noise) else DIPS
+    count = MOST_DIPS if failing else 4 * DIPS if isinstance(course, Noise) else DIPS
     around = AFTER if failing else before
     while len(found) < count and (not failing or -level.min() * failing > response.reserve):
         at = int(level.argmin())
