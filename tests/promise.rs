@@ -212,7 +212,7 @@ fn what_grows_beyond_the_tolerance_is_not_silent() {
         // Errors of a blow are small against its force, but by the next one, after a flight, they have moved its instant.
         (kinds::any, &[10_731, 12_630]),
         // What a contact leaves of its errors as it opens, by the next one.
-        (kinds::any, &[911_514, 921_359]),
+        (kinds::any, &[911_514]),
         (kinds::rough, &[930_625]),
         // In silence with half of the force of the deviation, after 421 openings and closings.
         (kinds::any, &[32_690]),
@@ -297,6 +297,7 @@ fn contacts_that_part_together_part_once() {
 /// nodes of long steps on a spring that rings on; where a contact began and ceased to slip in one step that was long against its damping
 /// time; where the errors of many steps with knots added up; between the few nodes of a step that went on beyond communication points;
 /// where two samples of what a polynomial misses passed through zero at once; a maximum between the few nodes after a knot;
+/// just before a contact parted, whose law has a branch point there;
 /// where a force turned while a fast vibration was at its zero at the nodes; where the base jerks a spring on a soft contact; where
 /// a tight tolerance took too few modes; and where one contact hardly touched, before the other was hit.
 #[test]
@@ -311,7 +312,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
             kinds::any,
             &[
                 10_691, 10_861, 10_723, 14_154, 17_090, 19_909, 61_677, 300_434, 300_604, 300_350, 18_503, 60_597,
-                100_687, 310_855, 900_841, 901_403, 901_926, 910_115, 910_670, 911_279,
+                100_687, 310_855, 900_841, 901_403, 901_926, 910_115, 910_670, 911_279, 921_359,
             ],
         ),
         (kinds::with_modes, &[70_009, 70_086, 70_227]),
@@ -326,6 +327,25 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
     // At the tightest tolerance the mean force of a step of 5e-18 s was mere rounding, and made a maximum that never was.
     let judged = judge(61_576, kinds::any, 0.0);
     assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
+}
+
+/// What a damper takes back within a long step would ring on in the deviation, which then grew with each blow until it said that the
+/// force is not known at all. A warning is logged beyond 30 tolerances.
+#[test]
+fn regular_chatter_is_not_warned_of() {
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-6, 1e-8] {
+        let mut relay = Relay::of("chatter", shaken(410.0, 1000.0), (1e-5, 10_000));
+        relay.scene.solver.tolerance = tolerance;
+        let expected = relay.run(|scene| tighten(scene, PART, 0.0)).unwrap().0;
+        let (course, _) = relay.run(|_| {}).unwrap();
+        let (force, extremes) = course.error(&expected);
+        let error = force.max(extremes);
+        assert!(
+            error < course.estimate && course.estimate < 30.0 * tolerance,
+            "{tolerance}: {error} {}",
+            course.estimate
+        );
+    }
 }
 
 /// A jump of the velocity of the fixed contact makes a peak of force that is over within picoseconds, faster than any mode vibrates: the

@@ -92,7 +92,8 @@
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it, the greatest of
 //! all contacts; that of one that is open or hardly touches is at the force scale, as it will meet what these errors make. Where
 //! inputs have just changed, forces bend, and an `m` that passes through zero shows nothing of it: there `m` is at least what the
-//! polynomials through fewer nodes let expect. In flight the estimate is what `m_a` and the quadrature do to the approach, times the
+//! polynomials through fewer nodes let expect, and the next term of theirs in the step before a contact parts, where its law has a
+//! branch point. In flight the estimate is what `m_a` and the quadrature do to the approach, times the
 //! stiffness the contact would have at the force scale.
 //!
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there. A blow makes it a

@@ -26,8 +26,7 @@ pub(super) struct Judged<'a, const S: usize, const L: usize> {
     pub(super) step: StepCoefficients<'a, S>,
     pub(super) collocation: &'a Collocation<S>,
     pub(super) free: &'a FreeResponse<S>,
-    /// Whether inputs, or their slopes, may just have changed: forces then bend, and a defect that passes through zero shows
-    /// nothing of it.
+    /// Whether inputs, or their slopes, may just have changed, which bends the forces.
     pub(super) bent: bool,
 }
 
@@ -39,9 +38,9 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model, and unknowns in use")]
     pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, trial: &mut Trial<S>) {
-        let Self { linked, step, collocation, free, bent: _ } = *self;
+        let Self { linked, step, collocation, free, .. } = *self;
         let Linked { model, state, .. } = *linked;
-        let defects = self.defects::<A>(trial);
+        let defects = self.defects::<A>(trial, self.is_parting(trial));
         let mut own = [NodalMotion::ZERO; L];
         for a in 0..in_use::<L>(linked.unknowns.count) {
             let unknown = linked.unknowns.get(a);
@@ -110,17 +109,34 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         trial.rounding = rounding;
     }
 
-    /// The defects of the unknown forces, and of those that follow them.
+    /// Whether a contact will be indented no longer before another step of this length has ended. A law that is softer the less it is
+    /// indented lets the approach go there like the power `1 / p` of the time left.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model")]
-    fn defects<A: Arithmetic>(&self, trial: &mut Trial<S>) -> Defects {
+    fn is_parting(&self, trial: &Trial<S>) -> bool {
+        let mut parting = false;
+        for a in 0..in_use::<L>(self.linked.unknowns.count) {
+            let index = self.linked.unknowns.get(a).link;
+            let (link, nodes) = (&self.linked.model.links[index], &trial.links[index]);
+            let Some(law) = link.contact() else { continue };
+            let (d, way) = (link.approach + end(&nodes.approaches), self.step.length * end(&nodes.rates));
+            parting |= law.exponent > 1.0 && d > 0.0 && d + law.exponent * way < 0.0;
+        }
+        parting
+    }
+
+    /// The defects of the unknown forces, and of those that follow them. Where forces bend, or a contact is about to part (`parting`), a
+    /// defect that passes through zero shows nothing of it.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links of the model")]
+    fn defects<A: Arithmetic>(&self, trial: &mut Trial<S>, parting: bool) -> Defects {
         let mut defects = Defects::default();
         (trial.start_defect, trial.next_terms) = (0.0, 0.0);
         for a in 0..in_use::<L>(self.linked.unknowns.count) {
             let unknown = self.linked.unknowns.get(a);
-            defects.0[unknown.link] = self.defect::<A>(unknown.link, trial);
+            defects.0[unknown.link] = self.defect::<A>(unknown.link, trial, parting);
             if let Some((follower, _)) = unknown.follower {
-                defects.0[follower] = self.defect::<A>(follower, trial);
+                defects.0[follower] = self.defect::<A>(follower, trial, parting);
             }
         }
         defects
@@ -130,14 +146,19 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
     /// compiled for the generic processor.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model")]
-    fn defect<A: Arithmetic>(&self, index: usize, trial: &mut Trial<S>) -> f64 {
+    fn defect<A: Arithmetic>(&self, index: usize, trial: &mut Trial<S>, parting: bool) -> f64 {
         let Linked { model, state, .. } = *self.linked;
         let start = state.links[index].force - model.links[index].force;
         let forces = &trial.links[index].forces;
         let defect = start - dot::<S, A>(forces, &self.collocation.at_start);
         let (expected, next) = self.collocation.next_terms::<A>(start, forces, defect);
         trial.next_terms = trial.next_terms.max(next);
-        let defect = if self.bent { expected.copysign(defect) } else { defect };
+        let least = match (self.bent, parting) {
+            (true, _) => expected,
+            (false, true) => next,
+            (false, false) => 0.0,
+        };
+        let defect = defect.abs().max(least).copysign(defect);
         trial.start_defect = trial.start_defect.max(defect.abs());
         defect
     }

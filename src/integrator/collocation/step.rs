@@ -126,6 +126,7 @@ impl<const S: usize> Step<'_, S> {
         let Prepared { step, collocation, .. } = self.prepared;
         let judged =
             Judged { linked, step, collocation, free, bent: self.drive.has_just_changed(state.time, step.length) };
+        self.set_motion::<A>(&free.ports, &solution.motions, trial);
         judged.estimate::<A>(solution, trial);
         if !state.is_closed() {
             // A magnet alone: what flies is judged as well.
@@ -133,7 +134,6 @@ impl<const S: usize> Step<'_, S> {
             estimate_in_flight(model, step, free, trial);
             (trial.error, trial.inner_error) = (trial.error.or(error), trial.inner_error.or(inside));
         }
-        self.set_motion::<A>(&free.ports, &solution.motions, trial);
     }
 
     /// The same of a step in which no force is unknown.
