@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.spatial.distance import cdist
-from scipy.special import betaincinv
 from scipy.stats import norm, qmc
 
 from qualified import described, placed
@@ -19,15 +18,7 @@ from relay_contact.qualification.excitation import Test as Asked
 from relay_contact.qualification.position import Position
 from relay_contact.qualification.relay import Model
 from relay_contact.qualification.results import Chance
-from relay_contact.qualification.statistics import (  # fmt: skip
-    MANY,
-    Surface,
-    chance,
-    distances,
-    drawn,
-    first_order,
-    least_chance,
-)
+from relay_contact.qualification.statistics import MANY, Surface, chance, distances, drawn, first_order
 from relay_contact.qualification.words import chance_text
 
 SLOW = Shock("slow", "", "from memory", 20.0, 0.1)
@@ -172,14 +163,6 @@ def test_intervals_of_a_chance() -> None:
     assert chance(margins, 0.01)[1:] == pytest.approx((0.0, 0.0229), abs=1e-4)
     margins[:] = 0.5
     assert told() == "all but < 369 ppm"
-
-
-@pytest.mark.parametrize("number", [8, 1000, MANY])
-def test_the_ends_of_a_chance_are_those_of_clopper_and_pearson(number: int) -> None:
-    for found in (1, 2, number // 3, number - 1, number):
-        assert least_chance(found, number, 0.025) == pytest.approx(
-            betaincinv(found, number - found + 1, 0.025), rel=1e-9
-        )
 
 
 def test_a_surface_follows_margins_and_tells_its_error() -> None:
