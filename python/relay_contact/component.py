@@ -203,9 +203,6 @@ class Component:
     def number(self, name: str, value: Value) -> float:
         """Return the number that stands for a value of a variable; a value of another type is refused."""
         kind = self.variables[name].type
-        if type(value) is float and kind == "Real" and abs(value) <= LARGEST_REAL:
-            # As most are, and soon told.
-            return value
         choices = self.choices(name) if kind == "Enumeration" else {}
         if isinstance(value, np.bool_ | np.floating):
             # Of a column of a table: a truth is no number there, and the largest number of single precision is smaller.

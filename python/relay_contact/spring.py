@@ -17,7 +17,7 @@ from relay_contact.files import RelayContactError, digest, read_toml, write_at_o
 PREFIX, FIXED = "spring.", "fixed.spring."
 OF_FILES = {"beam.file": PREFIX, "fixed.file": FIXED}
 """Beginnings of the names of entries, by the parameters that name their files."""
-BEGINNINGS = (PREFIX, FIXED)
+BEGINNINGS = tuple(OF_FILES.values())
 SPRING_FILES = tuple(OF_FILES)
 MODULUS = "youngs_modulus"
 WHOLE = "stiffness"

@@ -126,11 +126,16 @@ def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0
     else:
         level, step = stays(sign * response.moved(whole), lasting), STEP
     found: list[tuple[float, Piece]] = []
-    # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
-    count = MOST_DIPS if failing else 4 * DIPS if isinstance(course, Noise) else DIPS
-    around = AFTER if failing else before
-    while len(found) < count and (not failing or -level.min() * failing > response.reserve):
+    if failing:
+        # Far from linear theory a contact may fail some periods after a dip by it.
+        count, most, around, after = MOST_DIPS, MOST_DIPS, AFTER, 2 * AFTER
+    else:
+        # Of noise some more, as a change that is known at fewer times may miss their depth by some per cent.
+        count, most, around, after = 4 * DIPS if isinstance(course, Noise) else DIPS, DIPS, before, AFTER
+    while len(found) < count:
         at = int(level.argmin())
+        if failing and -level[at] * failing <= response.reserve:
+            break
         first, last = (round((step * at + each) / STEP) for each in (-around / 2, around / 2 + lasting))
         time = STEP * np.arange(first - since, last)
         near = np.interp(time, whole.time, whole.acceleration, left=0.0, right=0.0)
@@ -139,11 +144,10 @@ def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0
         # Also of a course with steps longer than that, three points before the dip: it rises from the first.
         latest = max(0, np.searchsorted(whole.time, now, "right") - 3)
         begin = float(whole.time[min(np.searchsorted(whole.time, now - 0.8 * before), latest)])
-        # Far from linear theory a contact may fail some periods after a dip by it.
-        part = whole.part(begin, now + lasting + (2 * AFTER if failing else AFTER), lasting)
+        part = whole.part(begin, now + lasting + after, lasting)
         found.append((dip, Piece(part, response.reserve / dip, begin - lead, longer)))
         level[max(0, at - round(around / step)) : at + round(around / step)] = np.inf
-    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[: MOST_DIPS if failing else DIPS]]
+    return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:most]]
 
 
 def further(specimen: Specimen, test: Transient, level: float, linear: float) -> list[tuple[str, Piece]]:

@@ -323,7 +323,8 @@ class Position:
         elif isinstance(test, Transient):
             for way, each in courses.further(specimen, test, level, linear):
                 tried, least = each.tried(specimen, test.directions[way]), level * (1 - ROUGHLY)
-                level = threshold(tried, least, failing, roughly=True)[0] if (failing := tried(least)[0]) else level
+                if failing := tried(least)[0]:
+                    level, _ = threshold(tried, least, failing, roughly=True)
         return float(np.log(level / linear))
 
     def dips(self, test: Test, scores: Array) -> Array:

@@ -31,10 +31,10 @@ NEEDED = {
 TABLES = tuple(NEEDED)
 """These tables, each named as the group of parameters in it; a table that is there is in the model."""
 OF_THE_POSITION = {
-    "coil.relativeCurrent": ("Armature", "1 at nominal current, 0 without current"),
-    "pusher.displacement": ("Prescribed", "where the pusher stays"),
+    "coil.relativeCurrent": "1 at nominal current, 0 without current",
+    "pusher.displacement": "where the pusher stays",
 }
-"""Inputs that say where the parts are, the same in all tests; each needed by one choice of effects.pusher, as what."""
+"""Inputs that say where the parts are, the same in all tests, in words; needed by what they are not used without."""
 HALF, STEP, FURTHER = 10, 1e-5, 1e-4
 """Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
 
@@ -134,8 +134,9 @@ class Relay:
                 # Parameters that do not fit together.
                 blow(component, positions[name])
                 check_held(component, positions[name])
-            for needed, (kind, allowed) in OF_THE_POSITION.items():
-                if positions[name].get("effects.pusher") == kind and needed not in positions[name]:
+            for needed, allowed in OF_THE_POSITION.items():
+                switch, kind = schema.SWITCHES[needed]
+                if positions[name].get(switch) == kind and needed not in positions[name]:
                     text = f"parameters.{needed}: missing, allowed is {allowed}"
                     raise RelayContactError(f"{path}:{schema.line(path, place)}: {schema.dotted(place)}.{text}")
         uncertainty = uncertainties(path, content.uncertainty, positions, component)

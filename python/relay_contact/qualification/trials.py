@@ -18,7 +18,7 @@ from relay_contact.qualification.standards import Contacts
 
 TOLERANCE = 1e-4  # solver.tolerance, which levels feel by less than their resolution
 GROWS = 1.5  # power of the time for which a contact fails that grows with the level; 2, did it not bounce
-WATCHED = 10  # periods, or those that are not forgotten at the next one
+WATCHED = 10  # periods at most: as many as the first of them is remembered for
 GENTLY, SOON, AT_ONCE = (1.0, 1.0), (0.4, 1.3), (0.0, 1.0)
 """Times in which a vibration rises, and for which it goes on until the start is forgotten, in those that it takes to
 settle. Soon: with less swing off the resonance, where only the level matters that fails."""
@@ -195,8 +195,8 @@ def vibrated(
     time = (rising + steadily) / frequency
     with specimen.start(sine(frequency, amplitude, rising / frequency)) as contact, contact.explained():
         contact.step(0.0, time)
-        step = 1 / frequency / (SAMPLES if specimen.sampled else 1)
-        pieces = round(np.ceil(min(settling, WATCHED)) / frequency / step)
+        samples = SAMPLES if specimen.sampled else 1
+        pieces, step = int(np.ceil(min(settling, WATCHED))) * samples, 1 / frequency / samples
         steps = np.full(pieces, step)
         lengths, left, ahead = specimen.failing(contact, time + step * np.arange(pieces + 1.0), steps, frequency)
         return lengths, left.min(axis=0).tolist(), ahead
