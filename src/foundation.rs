@@ -10,7 +10,6 @@ use crate::closed_loop::system::ClosedLoop;
 use crate::contact::law::{Law, Opening};
 use crate::error::SceneError;
 use crate::excitation::generator::Generator;
-use crate::force_error::Slowest;
 use crate::integrator::tolerance::Tolerance;
 use crate::math::simd::{Simd, apart};
 use crate::model::Model;
@@ -83,7 +82,6 @@ impl Model {
                 roles: Roles::default(),
                 participations: [0.0; MAX_MODES],
                 roots: Vec::new(),
-                slowest: Slowest::default(),
                 resolution,
                 inertia: inertia(&modes),
                 memory,

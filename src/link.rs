@@ -18,7 +18,7 @@
 
 use std::ops::Range;
 
-use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeStates};
+use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState, ModeStates};
 use crate::chatter::Criterion;
 use crate::contact::friction::Friction;
 use crate::contact::law::Law;
@@ -49,6 +49,10 @@ pub struct Port {
     pub shape: Modal,
     /// The modes that it has a part in.
     pub modes: Range<usize>,
+    /// Velocity per impulse, 1/kg.
+    pub mobility: f64,
+    /// Static displacement per force, m/N.
+    pub compliance: f64,
 }
 
 impl Port {
@@ -61,7 +65,17 @@ impl Port {
         let moves = |entry: &f64| *entry != 0.0;
         let first = shape.iter().position(moves).unwrap_or(0);
         let last = shape.iter().rposition(moves).map_or(first, |last| last + 1);
-        Self { shape, modes: first..last }
+        let mobility = shape.iter().map(|b| b * b).sum();
+        let at_rest = shape.iter().zip(modes).filter(|(b, mode)| **b != 0.0 && mode.omega_squared > 0.0);
+        let compliance = at_rest.map(|(b, mode)| b * b / mode.omega_squared).sum();
+        Self { shape, modes: first..last, mobility, compliance }
+    }
+
+    /// Of the first states of modes those of the modes that it has a part in.
+    #[inline(always)]
+    pub fn part<'a>(&self, states: &'a [ModeState]) -> &'a [ModeState] {
+        let end = self.modes.end.min(states.len());
+        states.get(self.modes.start..end).unwrap_or_default()
     }
 
     /// Displacement (m) and velocity (m/s).

@@ -14,7 +14,6 @@ use crate::contact::friction::Friction;
 use crate::contact::law::Law;
 use crate::error::Remark;
 use crate::excitation::generator::Generator;
-use crate::force_error::Slowest;
 use crate::integrator::constants::MOTION_ROUNDING;
 use crate::integrator::step_length::StepLengths;
 use crate::integrator::tolerance::Tolerance;
@@ -71,8 +70,6 @@ pub struct Model {
     pub preload: Preload,
     /// The modes of all springs and of the armature, frequency ascending.
     pub modes: Vec<Mode>,
-    /// Those of the deviation that shows how errors grow.
-    pub(crate) slowest: Slowest,
     /// The axial force, if it follows the deflection continuously.
     pub(crate) axial: Option<Box<Feedback>>,
     /// Modes and contact as one linear system, if the scene is linear, the generator harmonic, and nothing within a
@@ -127,7 +124,6 @@ impl Model {
         }
         let at_rest: f64 = links.iter().map(|link| link.force.abs()).sum();
         self.tolerance.newton = self.tolerance.newton.max(MOTION_ROUNDING * at_rest);
-        self.slowest = Slowest::of(&self.modes, &ports);
         self.law = links.get(CONTACT).and_then(Link::contact).copied().unwrap_or(laws.contact);
         (self.ports, self.links, self.roles) = (ports, links, roles);
         if let Some((_, friction)) = self.friction() {
@@ -344,8 +340,7 @@ impl Model {
 
     /// Velocity of a port per impulse on it, 1/kg.
     pub(crate) fn mobility_of(&self, port: usize) -> f64 {
-        let shape = self.ports.get(port).into_iter().flat_map(|port| &port.shape);
-        shape.map(|b| b * b).sum()
+        self.ports.get(port).map_or(0.0, |port| port.mobility)
     }
 
     /// Longest step allowed from `time` (s) on by scene and generator, s.

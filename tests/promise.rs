@@ -54,6 +54,57 @@ fn relays_driven_by_inputs_keep_their_tolerance() {
     }
 }
 
+/// The deviation with which the estimate tells what errors grow to is what two runs part by that begin a hair apart: while blows make ten
+/// million of it (32690), while regular chatter forgets it, with jumps of the force as a damper touches, with several bodies. All modes
+/// are in it here. Not in it are where friction sticks, and how an axial force follows the deflection.
+#[test]
+fn a_deviation_is_what_two_runs_part_by() {
+    let chatter = Relay::of("chatter", shaken(402.0, 1000.0), (1e-5, 1200));
+    let numbers = [80_002, 80_007, 80_018, 80_028, 80_034, 80_041, 80_042, 80_051, 80_059, 1_200_023];
+    let relays = numbers.into_iter().map(kinds::any).chain([chatter]).map(|relay| (relay, 1e-10, 1e-3));
+    // So small a hair, for the blows not to make more of it than is linear, is to be seen to a hundredth beside roundings of the motion.
+    for (relay, hair, bound) in relays.chain([(kinds::any(32_690), 1e-14, 0.1)]) {
+        let mut scene = relay.scene.clone();
+        (scene.solver.tolerance, scene.solver.modes) = (1e-8, 5);
+        let (size, count) = relay.steps;
+        let end = size * f64::from(count);
+        let step = |simulation: &mut Simulation| {
+            let time = simulation.time();
+            simulation.step(&relay.inputs(time, size), time, size).unwrap();
+        };
+        let run = |simulation: &mut Simulation, until: f64| {
+            while simulation.time() < until {
+                step(simulation);
+            }
+            simulation.state_now().unwrap()
+        };
+        let mut simulation = Simulation::new(&scene, &relay.inputs(0.0, size), 0.0).unwrap();
+        while !simulation.state().force_error.deviates() {
+            step(&mut simulation);
+        }
+        let begun = simulation.time() + 0.05 * end;
+        let start = run(&mut simulation, begun);
+        let model = simulation.model();
+        let of = |change: f64| {
+            let mut state = start;
+            for (at, deviation) in state.modes.iter_mut().zip(&start.force_error.deviation) {
+                (at.q, at.v) = (at.q + change * deviation.q, at.v + change * deviation.v);
+            }
+            model.settle(&mut state);
+            run(&mut Simulation::from_state(model.clone(), &state), begun + 0.2 * (end - begun))
+        };
+        let (state, changed) = (of(0.0), of(hair));
+        let grown = hair * (state.force_error.growth - start.force_error.growth).exp();
+        let parts = model.modes.iter().zip(&state.force_error.deviation).zip(state.modes.iter().zip(&changed.modes));
+        let wrong = parts.map(|((mode, deviation), (from, to))| {
+            let [q, v] = [to.q - from.q - grown * deviation.q, to.v - from.v - grown * deviation.v];
+            mode.omega_squared * q * q + v * v
+        });
+        let wrong = wrong.sum::<f64>().sqrt() / grown;
+        assert!(wrong < bound, "{}, grown {:e} times: wrong by {wrong:e} of it", relay.kind, grown / hair);
+    }
+}
+
 /// So few modes are too few for these: the run says so, also of contacts that stay closed, of springs whose given modes are not all
 /// used, and of blows between two springs.
 #[test]
@@ -312,7 +363,7 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
             kinds::any,
             &[
                 10_691, 10_861, 10_723, 14_154, 17_090, 19_909, 61_677, 300_434, 300_604, 300_350, 18_503, 60_597,
-                100_687, 310_855, 900_841, 901_403, 901_926, 910_115, 910_670, 911_279, 921_359,
+                100_687, 310_855, 900_841, 901_403, 901_926, 910_115, 910_670, 911_279, 921_359, 32_220, 6_000_048,
             ],
         ),
         (kinds::with_modes, &[70_009, 70_086, 70_227]),
@@ -327,6 +378,15 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
     // At the tightest tolerance the mean force of a step of 5e-18 s was mere rounding, and made a maximum that never was.
     let judged = judge(61_576, kinds::any, 0.0);
     assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
+}
+
+/// Errors that grow by e^12 from blow to blow, and one that is made where another contact closes.
+#[test]
+fn what_errors_grow_to_is_told() {
+    for number in [32_690, 31_739] {
+        let judged = judge(number, kinds::any, PART);
+        assert!(judged.error > judged.tolerance && judged.estimate > judged.tolerance, "{judged:?}");
+    }
 }
 
 /// What a damper takes back within a long step would ring on in the deviation, which then grew with each blow until it said that the

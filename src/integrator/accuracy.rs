@@ -7,6 +7,7 @@ use crate::integrator::collocation::part::{Instant, Whole};
 use crate::integrator::collocation::shapes::Variable;
 use crate::integrator::constants::{FORCE_ROUNDING, FREE_ROUNDING, LOOKED};
 use crate::integrator::events::cubic::Cubic;
+use crate::integrator::rounding::motion_rounding;
 use crate::link::CONTACT;
 use crate::math::nodal::{Nodal, end, greatest};
 use crate::math::prediction::{value_and_slope, value_at};
@@ -60,10 +61,11 @@ impl<const S: usize> Whole<'_, S> {
 
     /// What the forces of closed contacts differ from those of their laws where they turn, N, at the motion that also has the velocities
     /// at the nodes: polynomials through fewer nodes do not show how a law bends near zero force, and a fast vibration may be at its
-    /// zero at all of them. Not looked at where next terms are far below the error `allowed`.
-    pub(crate) fn law_residual(&self, allowed: f64) -> f64 {
+    /// zero at all of them, or at the start. Not looked at where next terms are far below the error `allowed`, unless what drives the
+    /// motion has just changed.
+    pub(crate) fn law_residual(&self, allowed: f64, changed: bool) -> f64 {
         let Self { model, state, collocation, trial, length, .. } = *self;
-        if trial.next_terms < LOOKED * allowed || collocation.variable == Variable::Root {
+        if !changed && trial.next_terms < LOOKED * allowed || collocation.variable == Variable::Root {
             return 0.0;
         }
         let mut most = 0.0_f64;
@@ -72,6 +74,9 @@ impl<const S: usize> Whole<'_, S> {
             let through = |start: f64, values: &Nodal<S>| collocation.through(model.simd, start, values);
             let force = through(at.force - link.force, &nodes.forces);
             let (approach, rate) = (through(at.approach, &nodes.approaches), through(at.rate, &nodes.rates));
+            let (rounding, _) = motion_rounding(model, (link, at), state);
+            // So much steeper than it is high a polynomial of degree S may be (Markov).
+            let rounding = (2 * S * S) as f64 * rounding / length;
             let rates = || iter::once((0.0, at.rate)).chain(collocation.places.iter().copied().zip(nodes.rates));
             let missed = |(at, rate): (f64, f64)| {
                 let rate = rate * length - value_and_slope(&approach, at - 1.0).1;
@@ -80,8 +85,12 @@ impl<const S: usize> Whole<'_, S> {
             for (x, _) in turns(at.force - link.force, &collocation.places, &nodes.forces) {
                 let around = rates().zip(rates().skip(1)).find(|(_, (place, _))| *place >= x);
                 let Some((before, after)) = around else { continue };
-                let d = value_at(&approach, x - 1.0) + Cubic { a: missed(before), b: missed(after) }.at(x).d;
-                let lawful = law.closed_branch(link.approach + d, value_at(&rate, x - 1.0)).force;
+                let more = Cubic { a: missed(before), b: missed(after) }.at(x);
+                let (d, slope) = value_and_slope(&approach, x - 1.0);
+                let speed = value_at(&rate, x - 1.0);
+                let more_speed = (slope + more.rate) / length - speed;
+                let speed = speed + more_speed - more_speed.clamp(-rounding, rounding);
+                let lawful = law.closed_branch(link.approach + d + more.d, speed).force;
                 most = most.max((link.force + value_at(&force, x - 1.0) - lawful).abs());
             }
         }

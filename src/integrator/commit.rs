@@ -5,12 +5,12 @@ use crate::excitation::drive::Drive;
 use crate::integrator::collocation::cache::Cache;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::Trial;
-use crate::integrator::constants::{MANY_STEPS, SEEN};
+use crate::integrator::constants::MANY_STEPS;
 use crate::integrator::dense_output::DenseSlip;
+use crate::integrator::deviation;
 use crate::integrator::grid::Target;
 use crate::link::{CONTACT, LinkLaw};
 use crate::math::nodal::end;
-use crate::math::simd::compiled_for;
 use crate::model::Model;
 use crate::state::{State, copy_first};
 
@@ -24,7 +24,7 @@ pub(crate) fn commit<const S: usize>(
     target: &Target,
 ) -> Option<DenseSlip> {
     let slip = state.slip;
-    advance_deviation(model, state, cache, trial, target);
+    deviation::advance(model, state, trial, target.length);
     copy_first(&mut state.modes, &trial.modes, model.modes.len());
     state.time = target.time;
     state.displacements = drive.moved(state.displacements, target.length);
@@ -53,39 +53,6 @@ pub(crate) fn commit<const S: usize>(
     state.steps += 1;
     state.iterations += trial.iterations;
     follow_slip(model, (slip, state), cache.collocation, trial, target.length)
-}
-
-/// Carries the deviation along that tells what errors grow to.
-fn advance_deviation<const S: usize>(
-    model: &Model,
-    state: &mut State,
-    cache: &Cache<S>,
-    trial: &Trial<S>,
-    target: &Target,
-) {
-    if !state.force_error.deviates() {
-        return;
-    }
-    if let Some(contact) = model.links.get(CONTACT) {
-        let impulse = trial.slow_error * target.length;
-        state.force_error.disturb(&model.slowest, contact.port, impulse);
-    }
-    // Without a tangent are contacts that are open, and what slips.
-    let links = model.links.iter().zip(&trial.links).enumerate();
-    let at_work = links.filter(|(_, (_, nodes))| nodes.tangent.stiffness != 0.0);
-    let at_work = at_work.map(|(index, (link, nodes))| (index, link.port, nodes.tangent));
-    // A step that was cut has another length than the one that was prepared.
-    let own;
-    let free = if let Some(free) = cache.slowest(target.length) {
-        free
-    } else {
-        own = model.slowest.free(target.length);
-        &own
-    };
-    compiled_for!(model.simd, A => state.force_error.advance::<A>(&model.slowest, free, at_work));
-    if target.length > SEEN {
-        state.force_error.note_deviation(&model.links, model.force_scale);
-    }
 }
 
 /// Slip at the end of an accepted step of `length` seconds, which began with a `start`: distance and energy; and the courses of slip

@@ -3,6 +3,7 @@
 use std::array;
 
 use crate::error::StepError;
+use crate::force_error::Deviation;
 use crate::integrator::collocation::error::of_rounding;
 use crate::integrator::collocation::part::shorten;
 use crate::integrator::collocation::trial::{LinkNodes, Trial};
@@ -171,10 +172,14 @@ impl Stepper<'_> {
     {
         let mut locator = self.locator(trial, length);
         let ends = array::from_fn(|index| locator.inside(index, at));
+        let mut deviation = Deviation::default();
+        if locator.whole.state.force_error.deviates() {
+            locator.whole.deviation(at, &mut deviation);
+        }
         let (room, search) = self.workspace.parts();
         let Room { cache, scratch, .. } = room;
         let part = (trial, scratch.axial.loads.as_mut_slice());
-        let end = (&ends, &*search.modes);
+        let end = (&ends, &*search.modes, &deviation);
         shorten((self.model, self.state), cache.collocation, part, at / length, end);
         search.looked = None;
     }

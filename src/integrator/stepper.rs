@@ -124,7 +124,7 @@ impl<'a> Stepper<'a> {
         } else {
             0.0
         };
-        let law_residual = if watched && closed { whole.law_residual(allowed) / allowed } else { 0.0 };
+        let law_residual = if watched && closed { whole.law_residual(allowed, changed) / allowed } else { 0.0 };
         // It only rejects.
         let inside = if law_residual > 1.0 { inside.max(law_residual) } else { inside };
         let all = self.passing();

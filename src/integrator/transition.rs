@@ -11,16 +11,23 @@ use crate::state::State;
 /// Opens or closes a contact at the instant of the state. Short steps begin anew.
 pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut Events) {
     let (Some(link), time) = (model.links.get(index), state.time) else { return };
-    if let Some(law) = link.contact() {
-        state.force_error.keep(law.firm, model.force_scale);
+    if let Some(port) = model.ports.get(link.port) {
+        if let Some(law) = link.contact() {
+            state.force_error.keep((law.firm, law.damping), port, model.force_scale);
+        }
+        state.force_error.begin(&model.modes, port);
     }
-    state.force_error.begin(&model.slowest, link.port);
     let Some(at) = state.links.get_mut(index) else { return };
     at.closed = !at.closed;
     let closed = at.closed;
     log.record(log::Event { time, closes: closed, link: index });
     let touch = link.contact().filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));
+    if at.force > 0.0
+        && let Some(port) = model.ports.get(link.port)
+    {
+        state.force_error.jump(&model.modes, port, at.force / at.rate);
+    }
     if closed {
         at.last_closing = Some(time);
         state.last_kink = time;

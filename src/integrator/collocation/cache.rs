@@ -4,11 +4,9 @@ use std::mem;
 
 use crate::excitation::random::Piece;
 use crate::excitation::waveform::Accelerations;
-use crate::force_error::Lanes;
 use crate::integrator::collocation::coefficients::StepCoefficients;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::store::Store;
-use crate::math::free_motion::FreeMotion;
 use crate::math::nodal::{LONG, SHORT};
 use crate::model::Model;
 use crate::shared::{Home, Shared, Shelf};
@@ -72,11 +70,6 @@ impl<const S: usize> Cache<S> {
             collocation,
             generated: model.generator.over_step(model.simd, time, step.turns, &mut self.piece),
         }
-    }
-
-    /// The free motion of the modes of a deviation over the length that was last prepared, if it is this one.
-    pub(crate) fn slowest(&self, length: f64) -> Option<&FreeMotion<Lanes>> {
-        self.places.slowest(length)
     }
 }
 

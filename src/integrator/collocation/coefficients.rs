@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::Zeroable;
 
-use crate::beam::mode::Mode;
+use crate::beam::mode::{Mode, ModeState};
 use crate::excitation::generator::Turns;
 use crate::integrator::collocation::shapes::Shapes;
 use crate::integrator::collocation::superposition::{self, Pair, Sum};
@@ -169,11 +169,25 @@ pub(super) const fn responses_before(port: usize) -> usize {
 }
 
 impl<'a, const S: usize> StepCoefficients<'a, S> {
-    /// Free motion of a port, mode by mode, of the modes that it has a part in.
+    /// Free motion of a port at the nodes, of which the modes that it has a part in begin so.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "there are coefficients for every port of the model")]
-    pub fn free_of_port(&self, port: usize) -> &'a [NodeRows<S>] {
-        &self.rows[self.of_port[port].clone()]
+    pub(super) fn free_motion<A: Arithmetic>(&self, port: usize, states: &[ModeState]) -> NodalMotion<S> {
+        // Separate sums for q and v, which the processor computes in parallel.
+        let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
+        for (mode, row) in states.iter().zip(&self.rows[self.of_port[port].clone()]) {
+            add::<S, A>(&mut d, mode.q, &row.from_q);
+            add::<S, A>(&mut from_v, mode.v, &row.from_v);
+            add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
+            add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
+        }
+        for (sum, from_v) in d.iter_mut().zip(&from_v) {
+            *sum += from_v;
+        }
+        for (sum, from_v) in rate.iter_mut().zip(&rate_from_v) {
+            *sum += from_v;
+        }
+        NodalMotion { d, rate }
     }
 
     /// The response of a port to a base acceleration, which loads the modes with their `participation`.

@@ -245,7 +245,7 @@ pub(crate) fn of_rounding<const S: usize>(model: &Model, state: &State, trial: &
         let Tangent { stiffness, damping, gain } = nodes.tangent;
         // The force at the first node feeds back only over the time up to it, some 1 / S^2 of the step.
         let reaction = 1.0 + gain / (S * S) as f64;
-        (stiffness.abs() * displacement + damping * velocity) / reaction
+        (stiffness * displacement + damping * velocity) / reaction
     });
     rounding * of_links.sum::<f64>()
 }

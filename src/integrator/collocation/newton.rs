@@ -120,7 +120,7 @@ impl<const S: usize> Joined<S> {
 /// Tangent of the law of a link within a step; zero if its force does not depend on the motion.
 #[derive(Clone, Copy, Debug, Default, Zeroable)]
 pub struct Tangent {
-    /// Greatest stiffness at start and nodes, N/m; that of a magnet is negative.
+    /// Greatest stiffness at start and nodes, N/m; of a magnet its magnitude.
     pub stiffness: f64,
     /// Greatest damping there, N s/m.
     pub damping: f64,
@@ -343,16 +343,28 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         }
     }
 
-    /// What defects of the loads at the start do to the forces at the nodes, and to the motion at the end, from the motion that
-    /// they make with forces as they are.
+    /// What the forces answer to a motion that is added to that with forces as they are.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    pub(crate) fn wrong<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, own: &[NodalMotion<S>; L]) -> Wrong<S, L> {
+    pub(crate) fn answer<A: Arithmetic>(
+        &self,
+        solution: &Solution<'_, S, L>,
+        own: &[NodalMotion<S>; L],
+    ) -> Stacked<S, L> {
         let mut forces = [[0.0; S]; L];
         for a in 0..in_use::<L>(self.unknowns.count) {
             forces[a] = solution.laws.change::<A>(a, |of| own[of]);
         }
         solution.factors.solve::<A>(&mut forces);
+        forces
+    }
+
+    /// What defects of the loads at the start do to the forces at the nodes, and to the motion at the end, from the motion that
+    /// they make with forces as they are.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
+    pub(crate) fn wrong<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, own: &[NodalMotion<S>; L]) -> Wrong<S, L> {
+        let forces = self.answer::<A>(solution, own);
         let mut ends = [(0.0, 0.0); L];
         for a in 0..in_use::<L>(self.unknowns.count) {
             ends[a] = (end(&own[a].d), end(&own[a].rate));
@@ -381,9 +393,6 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
         }
         let (d, rate) = self.responses[a][a].columns.at_end(&[1.0; S]);
         let gain = (stiffness * d + damping * rate).max(0.0);
-        if let LinkLaw::Magnet(_) = link.law {
-            stiffness = -stiffness;
-        }
         Tangent { stiffness, damping, gain }
     }
 }

@@ -1,8 +1,9 @@
 //! The first part of a step that has been computed: the exact motion of the modes under the polynomials of the whole step.
 //! A step ends at an event inside it without new coefficients and without another solution for the nodal forces.
 
-use crate::beam::mode::{Modal, ModeStates, lanes};
+use crate::beam::mode::{Modal, ModeState, ModeStates, lanes};
 use crate::excitation::drive::Drive;
+use crate::force_error::Deviation;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Loads, Shapes};
 use crate::integrator::collocation::side_by_side::Loaded;
@@ -16,6 +17,17 @@ use crate::state::State;
 
 /// Base acceleration, forces at ports, and an axial force on each of the modes side by side.
 const MOST_LOADS: usize = 1 + MAX_PORTS + LANES;
+
+/// Modes that move over a step.
+struct Moving<'a, const S: usize> {
+    starts: &'a [ModeState],
+    /// Forces of the links.
+    forces: [Nodal<S>; MAX_LINKS],
+    /// Base accelerations, m/s2.
+    accelerations: Nodal<S>,
+    /// Loads of an axial force on each mode; none, if empty.
+    axial: &'a [Nodal<S>],
+}
 
 /// A link at an instant inside a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,34 +57,55 @@ pub(crate) struct Whole<'a, const S: usize> {
 impl<const S: usize> Whole<'_, S> {
     /// The modes `at` seconds after the start.
     pub(crate) fn modes(&self, at: f64, ends: &mut ModeStates) {
+        let Self { state, trial, axial, .. } = *self;
+        let forces = trial.links.each_ref().map(|nodes| nodes.forces);
+        self.motion(&Moving { starts: &state.modes, forces, accelerations: trial.accelerations, axial }, at, ends);
+    }
+
+    /// The deviation `at` seconds after the start.
+    pub(crate) fn deviation(&self, at: f64, ends: &mut Deviation) {
+        let Self { state, trial, .. } = *self;
+        let forces = trial.links.each_ref().map(|nodes| nodes.deviation);
+        let starts = &state.force_error.deviation;
+        self.motion(&Moving { starts, forces, accelerations: [0.0; S], axial: &[] }, at, ends);
+    }
+
+    /// Modes `at` seconds after the start.
+    fn motion(&self, moving: &Moving<'_, S>, at: f64, ends: &mut [ModeState]) {
         let Self { model, state, .. } = *self;
         let flies = !state.is_closed()
             && model.links.iter().all(|link| link.contact().is_some())
             && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0);
-        match (model.ports.len(), model.axial.is_none()) {
-            (1, true) if flies => compiled_for!(model.simd, A => self.compute::<1, A>(at, flies, ends)),
-            (1, true) => compiled_for!(model.simd, A => self.compute::<2, A>(at, flies, ends)),
-            _ => compiled_for!(model.simd, A => self.compute::<MOST_LOADS, A>(at, flies, ends)),
+        match (model.ports.len(), moving.axial.is_empty()) {
+            (1, true) if flies => compiled_for!(model.simd, A => self.compute::<1, A>(moving, at, flies, ends)),
+            (1, true) => compiled_for!(model.simd, A => self.compute::<2, A>(moving, at, flies, ends)),
+            _ => compiled_for!(model.simd, A => self.compute::<MOST_LOADS, A>(moving, at, flies, ends)),
         }
     }
 
     /// Where no force changes, as all contacts fly, it is about the equilibrium under the forces as they are: there are fewer loads then.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "ports of the model, and loads in use")]
-    fn compute<const LOADS: usize, A: Arithmetic>(&self, at: f64, flies: bool, ends: &mut ModeStates) {
-        let Self { model, state, collocation, trial, .. } = *self;
+    fn compute<const LOADS: usize, A: Arithmetic>(
+        &self,
+        moving: &Moving<'_, S>,
+        at: f64,
+        flies: bool,
+        ends: &mut [ModeState],
+    ) {
+        let (model, collocation) = (self.model, self.collocation);
         let shapes = &collocation.shapes;
         let mut rows = [[0.0; S]; S];
         for (row, node) in rows.iter_mut().zip(&collocation.nodes) {
             *row = collocation.lagrange(node * (at / self.length));
         }
         let mut at_ports = [[0.0; S]; MAX_PORTS];
-        for (link, nodes) in model.links.iter().zip(&trial.links) {
-            add::<S, A>(&mut at_ports[link.port], link.sense, &nodes.forces);
+        for (link, forces) in model.links.iter().zip(&moving.forces) {
+            add::<S, A>(&mut at_ports[link.port], link.sense, forces);
         }
         let (mut loads, mut parts) = (Loads::ZERO, [[0.0; LANES]; LOADS]);
         let part = (shapes, &rows);
-        set::<S, LOADS, A>(part, &mut loads, 0, &scaled(&trial.accelerations, -1.0));
+        set::<S, LOADS, A>(part, &mut loads, 0, &scaled(&moving.accelerations, -1.0));
         let mut count = 1;
         if !flies {
             for forces in at_ports.iter().take(model.ports.len()) {
@@ -81,13 +114,13 @@ impl<const S: usize> Whole<'_, S> {
             }
         }
         let of_ports = count;
-        if model.axial.is_some() {
+        if !moving.axial.is_empty() {
             for i in 0..LANES {
                 parts[count + i][i] = 1.0;
             }
             count += LANES;
         }
-        let starts = state.modes.as_chunks::<LANES>().0.iter();
+        let starts = moving.starts.as_chunks::<LANES>().0.iter();
         let ends = ends.as_chunks_mut::<LANES>().0.iter_mut();
         for (group, (roots, (starts, ends))) in model.roots.iter().zip(starts.zip(ends)).enumerate() {
             let of_group = |values: &Modal| *lanes(values, group);
@@ -106,8 +139,8 @@ impl<const S: usize> Whole<'_, S> {
                     *parts = of_group(&port.shape);
                 }
             }
-            if model.axial.is_some() {
-                let own = self.axial.chunks(LANES).nth(group).unwrap_or_default();
+            if !moving.axial.is_empty() {
+                let own = moving.axial.chunks(LANES).nth(group).unwrap_or_default();
                 for i in 0..LANES {
                     set::<S, LOADS, A>(part, &mut loads, of_ports + i, own.get(i).unwrap_or(&[0.0; S]));
                 }
@@ -158,7 +191,7 @@ pub(crate) fn shorten<const S: usize>(
     collocation: &Collocation<S>,
     (trial, axial): (&mut Trial<S>, &mut [Nodal<S>]),
     part: f64,
-    (ends, modes): (&[Instant; MAX_LINKS], &ModeStates),
+    (ends, modes, deviation): (&[Instant; MAX_LINKS], &ModeStates, &Deviation),
 ) {
     let nodes = collocation.nodes.map(|node| node * part);
     let rows = nodes.map(|x| collocation.lagrange(x));
@@ -175,6 +208,7 @@ pub(crate) fn shorten<const S: usize>(
         } else {
             nodal(&nodes.forces)
         };
+        nodes.deviation = nodal(&nodes.deviation);
         nodes.approaches = with_start(start.approach, &nodes.approaches);
         nodes.rates = with_start(start.rate, &nodes.rates);
         nodes.end = LinkEnd {
@@ -198,12 +232,13 @@ pub(crate) fn shorten<const S: usize>(
         trial.slip.rates = nodal(&trial.slip.rates);
     }
     trial.modes = *modes;
+    trial.deviation = *deviation;
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::beam::mode::{MAX_MODES, ModeState};
+    use crate::beam::mode::MAX_MODES;
     use crate::integrator::collocation::cache::{Cache, OF_LONG};
     use crate::integrator::collocation::polynomial::LONG_BY_TIME;
     use crate::integrator::collocation::step::compute;

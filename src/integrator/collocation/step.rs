@@ -128,6 +128,9 @@ impl<const S: usize> Step<'_, S> {
             Judged { linked, step, collocation, free, bent: self.drive.has_just_changed(state.time, step.length) };
         self.set_motion::<A>(&free.ports, &solution.motions, trial);
         judged.estimate::<A>(solution, trial);
+        if state.force_error.deviates() {
+            self.deviate::<L, A>(linked, solution, trial);
+        }
         if !state.is_closed() {
             // A magnet alone: what flies is judged as well.
             let (error, inside) = (trial.error, trial.inner_error);
@@ -150,7 +153,6 @@ impl<const S: usize> Step<'_, S> {
     /// Motion of the ports under what is known: the state of the modes, the base acceleration, and forces that do not depend on
     /// the motion, which are set.
     #[inline(always)]
-    #[expect(clippy::indexing_slicing, reason = "ports and links of the model")]
     fn set_free_response<A: Arithmetic>(&self, trial: &mut Trial<S>, free: &mut FreeResponse<S>) {
         let Self { model, state, .. } = *self;
         let Prepared { step, collocation, generated } = self.prepared;
@@ -166,22 +168,7 @@ impl<const S: usize> Step<'_, S> {
 
         let pushed = scaled(accelerations, -1.0);
         for (p, (port, motion)) in model.ports.iter().zip(&mut free.ports).enumerate() {
-            // Separate sums for q and v, which the processor computes in parallel.
-            let [mut d, mut rate, mut from_v, mut rate_from_v] = [[0.0; S]; 4];
-            let states = &state.modes[port.modes.clone()];
-            for (mode, row) in states.iter().zip(step.free_of_port(p)) {
-                add::<S, A>(&mut d, mode.q, &row.from_q);
-                add::<S, A>(&mut from_v, mode.v, &row.from_v);
-                add::<S, A>(&mut rate, mode.q, &row.rate_from_q);
-                add::<S, A>(&mut rate_from_v, mode.v, &row.rate_from_v);
-            }
-            for (sum, from_v) in d.iter_mut().zip(&from_v) {
-                *sum += from_v;
-            }
-            for (sum, from_v) in rate.iter_mut().zip(&rate_from_v) {
-                *sum += from_v;
-            }
-            *motion = NodalMotion { d, rate };
+            *motion = step.free_motion::<A>(p, port.part(&state.modes));
             motion.respond::<A>(&step.acceleration(p).columns, &pushed);
         }
         self.set_known::<A>(trial, &mut free.ports);
@@ -190,12 +177,38 @@ impl<const S: usize> Step<'_, S> {
         free.axial = None;
     }
 
+    /// Sets the forces that the deviation makes, linearised about the motion.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links and ports of the model, and unknowns in use")]
+    fn deviate<const L: usize, A: Arithmetic>(
+        &self,
+        linked: &Linked<S, L>,
+        solution: &Solution<'_, S, L>,
+        trial: &mut Trial<S>,
+    ) {
+        let Self { model, state, .. } = *self;
+        let mut own = [NodalMotion::ZERO; L];
+        for (own, unknown) in own.iter_mut().zip(self.unknowns.iter()) {
+            let link = &model.links[unknown.link];
+            let deviation = model.ports[link.port].part(&state.force_error.deviation);
+            let port = self.prepared.step.free_motion::<A>(link.port, deviation);
+            own.add::<A>(-link.sense, &port);
+        }
+        for (forces, unknown) in linked.answer::<A>(solution, &own).iter().zip(self.unknowns.iter()) {
+            trial.links[unknown.link].deviation = *forces;
+            if let Some((follower, share)) = unknown.follower {
+                trial.links[follower].deviation = scaled(forces, share);
+            }
+        }
+    }
+
     /// Sets the forces that do not depend on the motion, and adds the motion that they cause.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model")]
     fn set_known<A: Arithmetic>(&self, trial: &mut Trial<S>, ports: &mut [NodalMotion<S>; MAX_PORTS]) {
         for (index, link) in self.model.links.iter().enumerate() {
             let nodes = &mut trial.links[index];
+            nodes.deviation = [0.0; S];
             if self.unknowns.iter().any(|unknown| unknown.link == index) {
                 continue;
             }
@@ -332,18 +345,15 @@ impl<const S: usize> Step<'_, S> {
     fn set_end<A: Arithmetic>(&self, trial: &mut Trial<S>, on_modes: Option<&[Nodal<S>]>) {
         let Self { model, state, .. } = *self;
         let Prepared { step, .. } = self.prepared;
-        let mut loads = [[0.0; S]; MAX_PORTS];
-        for (link, nodes) in model.links.iter().zip(&trial.links) {
-            add::<S, A>(&mut loads[link.port], link.sense, &nodes.forces);
-        }
-        let (starts, ends) = (state.modes.as_chunks().0, trial.modes.as_chunks_mut().0);
-        for (rows, (start, end)) in step.end.iter().zip(starts.iter().zip(ends.iter_mut())) {
-            move_freely::<S, A>(rows, start, end);
-        }
+        let ends = trial.modes.as_chunks_mut().0;
+        move_freely::<S, A>(step.end, &state.modes, ends);
         // Load by load, so that its values stay in registers.
         load::<S, A>(step.end, ends, &model.participations, &scaled(&trial.accelerations, -1.0));
-        for (port, forces) in model.ports.iter().zip(&loads) {
-            load::<S, A>(step.end, ends, &port.shape, forces);
+        self.load_ports::<A>(trial.links.iter().map(|nodes| &nodes.forces), ends);
+        if state.force_error.deviates() {
+            let ends = trial.deviation.as_chunks_mut().0;
+            move_freely::<S, A>(step.end, &state.force_error.deviation, ends);
+            self.load_ports::<A>(trial.links.iter().map(|nodes| &nodes.deviation), ends);
         }
         if let Some(on_modes) = on_modes {
             load_each::<S, A>(step.end, ends, on_modes);
@@ -367,20 +377,35 @@ impl<const S: usize> Step<'_, S> {
             };
         }
     }
+
+    /// Adds to modes at the end what nodal forces of the links do.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "ports of the model")]
+    fn load_ports<'n, A: Arithmetic>(&self, forces: impl Iterator<Item = &'n Nodal<S>>, ends: &mut [Group]) {
+        let mut loads = [[0.0; S]; MAX_PORTS];
+        for (link, forces) in self.model.links.iter().zip(forces) {
+            add::<S, A>(&mut loads[link.port], link.sense, forces);
+        }
+        for (port, forces) in self.model.ports.iter().zip(&loads) {
+            load::<S, A>(self.prepared.step.end, ends, &port.shape, forces);
+        }
+    }
 }
 
-/// Moves a group of modes from its start to the end of a step, without loads. All of this is done in pairs, as modes are read and
-/// written: apart, q and v take twice the instructions.
+/// Moves modes from the start to the end of a step, without loads. All of this is done in pairs, as modes are read and written: apart,
+/// q and v take twice the instructions.
 #[inline(always)]
-fn move_freely<const S: usize, A: Arithmetic>(rows: &EndGroup<S>, start: &Group, end: &mut Group) {
-    let (same, mut other) = (pairs(start), [0.0; 2 * LANES]);
-    for (other, start) in other.as_chunks_mut().0.iter_mut().zip(start) {
-        *other = [start.v, start.q];
+fn move_freely<const S: usize, A: Arithmetic>(rows: &[EndGroup<S>], starts: &[ModeState], ends: &mut [Group]) {
+    for (rows, (start, end)) in rows.iter().zip(starts.as_chunks().0.iter().zip(ends)) {
+        let (same, mut other) = (pairs(start), [0.0; 2 * LANES]);
+        for (other, start) in other.as_chunks_mut().0.iter_mut().zip(start) {
+            *other = [start.v, start.q];
+        }
+        let mut sum = [0.0; 2 * LANES];
+        add_products::<{ 2 * LANES }, A>(&mut sum, &rows.same, &same);
+        add_products::<{ 2 * LANES }, A>(&mut sum, &rows.crossed, &other);
+        set(end, &sum);
     }
-    let mut sum = [0.0; 2 * LANES];
-    add_products::<{ 2 * LANES }, A>(&mut sum, &rows.same, &same);
-    add_products::<{ 2 * LANES }, A>(&mut sum, &rows.crossed, &other);
-    set(end, &sum);
 }
 
 /// Adds to modes at the end what a load does that acts on each with its part, and has these nodal values.

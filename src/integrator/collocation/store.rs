@@ -7,7 +7,6 @@ use bytemuck::{Zeroable, write_zeroes};
 
 use crate::beam::mode::Mode;
 use crate::excitation::generator::{Generator, Turns};
-use crate::force_error::Lanes;
 use crate::integrator::collocation::coefficients::{
     EndGroup, ModeColumns, NodeRows, Response, StepCoefficients, responses_before,
 };
@@ -106,8 +105,6 @@ struct Place<const S: usize> {
     length: f64,
     collocation: &'static Collocation<S>,
     turns: Turns<S>,
-    /// Free motion of the modes of a deviation.
-    slowest: FreeMotion<Lanes>,
 }
 
 /// Coefficients of steps of several lengths.
@@ -207,12 +204,6 @@ impl<const S: usize> Store<S> {
         }
     }
 
-    /// The free motion of the modes of a deviation over the length that was last asked for, if it is this one.
-    pub(super) fn slowest(&self, length: f64) -> Option<&FreeMotion<Lanes>> {
-        let place = self.places.all.get(self.last)?;
-        (place.length.to_bits() == length.to_bits()).then_some(&place.slowest)
-    }
-
     /// The coefficients for a length, `recurring`: one that is kept.
     pub(super) fn prepare(
         &mut self,
@@ -256,7 +247,7 @@ impl<const S: usize> Store<S> {
         self.columns.add(ModeColumns::zeroed);
         self.following.add(|| [0.0; S]);
         self.ends.add(EndGroup::zeroed);
-        self.places.add(|| Place { length: 0.0, collocation, turns: Turns::NONE, slowest: FreeMotion::default() });
+        self.places.add(|| Place { length: 0.0, collocation, turns: Turns::NONE });
         self.places.all.len() - 1
     }
 
@@ -292,7 +283,6 @@ impl<const S: usize> Store<S> {
         let own = &mut self.places.all[place];
         (own.length, own.collocation) = (length, collocation);
         own.turns.fill(&model.generator, length, &collocation.nodes);
-        own.slowest = model.slowest.free(length);
         let mut modes = Modes {
             rows: self.rows.of_mut(place),
             of_port: &self.of_port,

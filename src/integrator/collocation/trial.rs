@@ -3,6 +3,7 @@
 use bytemuck::{Zeroable, zeroed_box};
 
 use crate::beam::mode::ModeStates;
+use crate::force_error::Deviation;
 use crate::integrator::collocation::coefficients::NodalMotion;
 use crate::integrator::collocation::elimination::Equations;
 use crate::integrator::collocation::newton::{FEW, Joined, Tangent};
@@ -21,6 +22,8 @@ pub struct Trial<const S: usize> {
     pub slip: SlipNodes<S>,
     /// The modes at the end.
     pub modes: ModeStates,
+    /// The deviation there ([`crate::integrator::deviation`]).
+    pub deviation: Deviation,
     /// Estimate of the error this step adds to the contact force, N.
     pub error: Estimate,
     /// Estimate of the same at instants inside the step, N.
@@ -42,6 +45,8 @@ pub struct Trial<const S: usize> {
 pub struct LinkNodes<const S: usize> {
     /// Nodal forces, N.
     pub forces: Nodal<S>,
+    /// Those that the deviation makes.
+    pub deviation: Nodal<S>,
     /// Approach at the nodes, m.
     pub approaches: Nodal<S>,
     /// Its velocity at the nodes, m/s.
