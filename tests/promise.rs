@@ -378,6 +378,9 @@ fn relays_that_once_exceeded_the_tolerance_keep_it() {
     // At the tightest tolerance the mean force of a step of 5e-18 s was mere rounding, and made a maximum that never was.
     let judged = judge(61_576, kinds::any, 0.0);
     assert_eq!(judged.outcome, Outcome::Kept, "{judged:?}");
+    // There velocities by differences of ways over such a step were, too, and steps were rejected for ever.
+    let judged = judge(3_000_227, parts::armature, 0.0);
+    assert_ne!(judged.outcome, Outcome::NotRun, "{judged:?}");
 }
 
 /// Errors that grow by e^12 from blow to blow, and one that is made where another contact closes.

@@ -75,7 +75,7 @@ impl<const S: usize> Whole<'_, S> {
             let force = through(at.force - link.force, &nodes.forces);
             let (approach, rate) = (through(at.approach, &nodes.approaches), through(at.rate, &nodes.rates));
             let (rounding, _) = motion_rounding(model, (link, at), state);
-            // So much steeper than it is high a polynomial of degree S may be (Markov).
+            // Of its slope: so much steeper than it is high a polynomial of degree S may be (Markov).
             let rounding = (2 * S * S) as f64 * rounding / length;
             let rates = || iter::once((0.0, at.rate)).chain(collocation.places.iter().copied().zip(nodes.rates));
             let missed = |(at, rate): (f64, f64)| {
@@ -87,11 +87,12 @@ impl<const S: usize> Whole<'_, S> {
                 let Some((before, after)) = around else { continue };
                 let more = Cubic { a: missed(before), b: missed(after) }.at(x);
                 let (d, slope) = value_and_slope(&approach, x - 1.0);
-                let speed = value_at(&rate, x - 1.0);
-                let more_speed = (slope + more.rate) / length - speed;
-                let speed = speed + more_speed - more_speed.clamp(-rounding, rounding);
-                let lawful = law.closed_branch(link.approach + d + more.d, speed).force;
-                most = most.max((link.force + value_at(&force, x - 1.0) - lawful).abs());
+                let lawful = |speed: f64| law.closed_branch(link.approach + d + more.d, speed);
+                let mut branch = lawful(value_at(&rate, x - 1.0));
+                if branch.damping * rounding < LOOKED * allowed {
+                    branch = lawful((slope + more.rate) / length);
+                }
+                most = most.max((link.force + value_at(&force, x - 1.0) - branch.force).abs());
             }
         }
         most
