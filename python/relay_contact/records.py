@@ -6,6 +6,7 @@ included: nothing is resampled.
 """
 
 import importlib
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
@@ -29,6 +30,8 @@ ATTENUATED = 0.01  # part of a vibration, from which on it is told that straight
 SHORTEST = 1e-6  # s, of steps between samples of an acceleration
 FEWEST = 9  # values: two periods of what is sampled four times in each
 NAMED = 5  # channels that are named, of those that are not tested
+GRAMS = re.compile("(?!.*acc).*(mass|weight|force|load)", re.IGNORECASE)
+"""Names of channels whose g is the gram."""
 LOOKED = 200  # lines of a text in which the names of its columns are sought
 TIME = ("time", "t")
 """Names of the column, or of the variable, of time."""
@@ -47,7 +50,7 @@ class Record:
     clock: str = "s"
     """Unit of time in the file, empty if it has none."""
     others: tuple[str, ...] = ()
-    """Channels that are not tested, as they have another unit or none."""
+    """Channels that are not tested, as they have another unit or none, are masses, or not over time."""
 
     @property
     def notes(self) -> list[str]:
@@ -68,7 +71,8 @@ class Record:
             told.append(f"before the record the acceleration is its first value, {three(self.acceleration[0])} m/s²")
         if self.others:
             more = f" and {len(self.others) - NAMED} more" * (len(self.others) > NAMED)
-            told.append(f"channels not tested, as not in g or m/s²: {', '.join(self.others[:NAMED])}{more}")
+            named = ", ".join(self.others[:NAMED])
+            told.append(f"not tested, as no acceleration in g or m/s² over time: {named}{more}")
         return told
 
     @property
@@ -121,7 +125,8 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         name, own = each.name, each.unit
         names.append(name)
         known = spelled(own) or spelled(unit)
-        if channel.lower() != name.lower() if channel else known not in ACCELERATIONS:
+        is_other = known not in ACCELERATIONS or (spelled(own) != "m/s2" and GRAMS.match(name))
+        if channel.lower() != name.lower() if channel else is_other:
             others += [] if channel else [f"{name} ({own or 'no unit'})"]
             continue
         if known not in ACCELERATIONS:
@@ -219,10 +224,12 @@ def mdf(path: Path) -> Iterator[Channel]:
 
 
 def uff(path: Path) -> Iterator[Channel]:
-    """Read the sets 58 of a universal file, functions over time alone."""
+    """Read the sets 58 of a universal file; those that are not over time are named by their number."""
     sets = asked("pyuff", path).UFF(str(path)).read_sets()
     for number, each in enumerate(sets if isinstance(sets, list) else [sets], 1):
-        if each.get("type") == 58 and each.get("func_type") == 1:
+        if each.get("type") == 58 and each["func_type"] != 1:
+            yield Channel(f"set {number}", f"function type {each['func_type']:.0f}", None, None)
+        elif each.get("type") == 58:
             unit = str(each.get("ordinate_axis_units_lab", "")).strip()
             name = str(each.get("id1", "")).strip()
             clock = str(each.get("abscissa_axis_units_lab", "")).strip().replace("NONE", "")

@@ -135,6 +135,8 @@ def test_files_of_measuring_programs(tmp_path: Path) -> None:
         assert record.time == pytest.approx(TIME, abs=1e-9), name
         assert record.acceleration == pytest.approx(factor * VALUES, rel=1e-6, abs=1e-9), name
         assert ("time without a unit, taken as s" in record.notes) == (name == "road.mat"), name
+    pyuff.UFF(str(tmp_path / "road.uff")).write_sets({**blank, "func_type": 4, "data": VALUES + 0j}, "add")
+    assert read(tmp_path / "road.uff")[0].others == ("set 2 (function type 4)",)
     savemat(tmp_path / "matrix.mat", {"t": TIME, "Z": VALUES, "axes": np.ones((400, 3))})
     assert read(tmp_path / "matrix.mat", unit="g")[0].others == ("axes (a matrix)",)
     for suffix in ("uff", "tdms"):
@@ -154,6 +156,14 @@ def test_samples_that_a_file_marks_as_invalid_and_other_masters_than_time_are_re
             file.save(path, overwrite=True)
         with pytest.raises(RelayContactError, match=message):
             read(path)
+
+
+def test_a_mass_in_grams_is_no_acceleration(tmp_path: Path) -> None:
+    path = tmp_path / "shaker.csv"
+    path.write_text("time [ms],mass [g],acceleration of the mass [g]\n" + MORE.replace("\n", ",0\n") + "13,2,2\n")
+    (record,) = read(path)
+    assert (record.channel, record.others) == ("acceleration of the mass", ("mass (g)",))
+    assert read(path, "mass")[0].acceleration[-1] == pytest.approx(2 * G)
 
 
 def test_words_beside_a_record_are_not_read(tmp_path: Path) -> None:
