@@ -18,7 +18,7 @@ from relay_contact.qualification.judgement import transient
 from relay_contact.qualification.page import write
 from relay_contact.qualification.parts import CLOSED, CONTACT, CORE, PUSHER, STOP, Rest, all_parts
 from relay_contact.qualification.position import Position
-from relay_contact.qualification.relay import Model, Relay
+from relay_contact.qualification.relay import Relay
 from relay_contact.qualification.words import part_rows, reasons
 
 G = 9.80665
@@ -268,10 +268,15 @@ def test_a_draw_that_does_not_hold_the_armature_fails() -> None:
 def test_what_fails_at_rest_is_said() -> None:
     loose = position(WEAK, LONG)
     loose.rest = Rest(is_open=False)
-    worn = replace(placed(described({}), LONG), model=Model("worn", {"contact.overtravel": 1e-9}, 0.0))
+    worn, sagging, lifted = (
+        placed(described({"contact.overtravel": overtravel, "environment.gravity": gravity}), LONG)
+        for overtravel, gravity in ((1e-9, 0.0), (-1e-6, 9.8), (1e-6, -9.8))
+    )
     for own, told in (
         (loose, "the armature rests at neither of its stops"),
         (worn, "interrupted at rest: more than 600 Ω of contact resistance"),
+        (lifted, "interrupted at rest: more than 600 Ω of contact resistance"),
+        (sagging, "makes at rest: gravity closes the gap"),
     ):
         found = judgement.judged(own, LONG, FEW)
         assert (found.verdict, found.limits) == ("FAIL", told)

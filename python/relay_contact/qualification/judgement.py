@@ -471,11 +471,13 @@ def decided_at_rest(position: Position) -> tuple[Verdict, str] | None:
     if position.axis not in (NORMAL, *position.relay.axes):
         return "not judged", f"the relay's file has no participations of the modes in the axis {position.axis}"
     if position.value("contact.overtravel") == 0 and pusher == NONE:
-        return "not judged", "the contact just touches: neither closed nor open"
+        return "not judged", "contact.overtravel = 0: meant neither closed nor open"
     if position.value("effects.secondContact") and position.rest.is_open:
         both = "both contacts open: closings on both sides are not judged"
         return "not judged", f"{both}; give each side as a position of its own"
     if position.specimen.response.reserve <= 0:
+        if position.rest.is_open:
+            return "FAIL", "makes at rest: gravity closes the gap"
         return "FAIL", f"interrupted at rest: more than {position.contacts.threshold:g} Ω of contact resistance"
     return None
 

@@ -58,7 +58,7 @@ class Part:
 def at_rest(component: Component, values: Values) -> Rest:
     """Return what is judged with these parameters.
 
-    Without a pusher the sign of the overtravel says whether the contact is open, else the component does.
+    Without a pusher the sign of the overtravel says whether the contact is to be open, else the component does.
     """
     if component.choice(values, "effects.pusher") == NONE:
         return Rest(component.value(values, "contact.overtravel") < 0)

@@ -231,11 +231,11 @@ def answers(
     held = parts(component, values, rest)
     with component.started({**values, **FREE, "solver.tolerance": EXACT}) as contact, contact.explained():
         natural, reserves, size = reserved(contact, values, threshold, rest, held)
-        if not held:
+        if not held and reserves[CONTACT] > 0:
             answer = answered(contact, rest, held, size, calm, {CONTACT: 0.0})[CONTACT]
             return {CONTACT: transformed(reserves[CONTACT], natural, answer, 0.0)}
-    if any(reserves[part.name] <= 0 for part in held):
-        # Another relay, in which not all is held: it fails at rest.
+    if not held or any(reserves[part.name] <= 0 for part in held):
+        # It fails at rest: gravity is stronger, or it is another relay, in which not all is held.
         return {name: transformed(own, natural, np.zeros(WATCHED), 0.0) for name, own in reserves.items()}
     tolerance = EXACT
     if not rest.is_open:
