@@ -109,7 +109,8 @@ class Response:
         """
         low, high = test.density[0][0], test.density[-1][0]
         # A narrow band has lines of its own, as few of these are within.
-        frequency = np.linspace(low, high, LINES) if high - low < NARROW else self.frequency
+        inside = (self.frequency >= low) & (self.frequency <= high)
+        frequency = np.linspace(low, high, LINES) if high - low < NARROW else self.frequency[inside]
         density = test.spectrum(frequency)
         gain = np.interp(frequency, self.frequency, self.gain)
         powers = density / density.sum() * (G * overall(test.density)) ** 2 * gain**2
