@@ -558,13 +558,23 @@ def test_what_a_search_has_missed_is_found_at_the_level_of_the_test() -> None:
     shaken = judgement.vibration(own, tests[0], FEW)[0][CONTACT]
     assert shaken.factor <= 1
     assert "fails at the level of the test where linear theory predicts no failure" in shaken.limits
-    part, decides, piece = own.middle["random"]
+    part, decides, piece = own.middle[RANDOM.unit]
     linear = own.linear(own.specimen.response, RANDOM)
     failing = scaled(RANDOM, 1.02 * part * linear)
     assert isinstance(failing, Random)
     own = placed(described({}), failing)
-    own.middle["random"] = 1.1 * part, decides, piece
+    own.middle[failing.unit] = 1.1 * part, decides, piece
     assert judgement.random_level(own, failing)[0].factor <= 1
+
+
+def test_noises_that_differ_in_level_alone_are_sought_once() -> None:
+    louder = replace(scaled(RANDOM, 3.0), name="louder")
+    own = placed(described({}, {"tip.mass": Distribution(part=0.1)}), RANDOM, louder)
+    margin, lower = (judgement.judged(own, test, FEW).margin for test in own.tests)
+    assert [3 * each for each in (lower.low, lower.margin, lower.high)] == pytest.approx(
+        [margin.low, margin.margin, margin.high], rel=1e-9
+    )
+    assert len(own.noises) == 1
 
 
 @pytest.mark.parametrize(("gap", "told"), [(1e-4, True), (1e-3, False)])

@@ -314,6 +314,14 @@ class Random(Test):
             raise ValueError(f"allowed are {PERIODS} periods of the lowest frequency or more, {least:g} s")
         return duration
 
+    @property
+    def unit(self) -> "Random":
+        """The test at a level of its own, the same for all that differ in their level alone."""
+        # A tone has a level of its own.
+        first = 1.0 if self.sines else self.density[0][1]
+        density = tuple((frequency, float(f"{own / first:.12g}")) for frequency, own in self.density)
+        return replace(self, name="noise", clause="", evidence=LEVELS[-1], density=density, rms=overall(density))
+
     def spectrum(self, frequency: Array) -> Array:
         """Return the one-sided density at frequencies (Hz), (m/s2)2/Hz: straight lines on logarithmic scales."""
         return G**2 * straight(self.density, frequency)

@@ -234,8 +234,8 @@ def random_level(position: Position, test: Random) -> tuple[Level, Lengths, Arra
     specimen = position.specimen
     response = specimen.response
     linear = response.random(test, specimen.lasting)
-    _, eased = position.noises[test.name]
-    part, decides, piece = position.middle[test.name]
+    _, eased = position.noises[test.unit]
+    part, decides, piece = position.middle[test.unit]
     raised = piece.guess / (linear * eased)
     lengths, rows, _ = piece.follow(specimen, raised)
     own = specimen.own(lengths)

@@ -7,6 +7,7 @@ relay is, at both ends of each parameter that matters, and at the limit between 
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -99,6 +100,8 @@ class Position:
     shared: Shared = field(default_factory=Shared, init=False, repr=False)
     decisive: dict[str, tuple[float, courses.Piece]] = field(default_factory=dict, init=False, repr=False)
     """Of long courses, by the test's name: the sign of its direction, and what is around the dip that fails first."""
+    turned: dict[Any, float] = field(default_factory=dict, init=False, repr=False)
+    """What `sought` returns of noises, by their units and the scores of the draw."""
 
     def named(self, test: Test) -> str:
         """Return what a test is of, in words."""
@@ -150,9 +153,10 @@ class Position:
         }  # fmt: skip
 
     @cached_property
-    def noises(self) -> dict[str, tuple[list[courses.Piece], float]]:
-        """Of each noise, by the test's name: what is around its largest dips, and what clipping makes of its level."""
-        return {test.name: courses.noise_dips(self.specimen, test) for test in self.tests if isinstance(test, Random)}
+    def noises(self) -> dict[Random, tuple[list[courses.Piece], float]]:
+        """Of each noise at its unit: what is around its largest dips, and what clipping makes of its level."""
+        units = dict.fromkeys(test.unit for test in self.tests if isinstance(test, Random))
+        return {test: courses.noise_dips(self.specimen, test) for test in units}
 
     def is_endless(self, test: Test) -> bool:
         """Return whether a test hardly shakes the part."""
@@ -277,11 +281,21 @@ class Position:
         return {test.name: trials.sine_least(self.specimen, test) for test in self.tests if isinstance(test, Sine)}
 
     @cached_property
-    def middle(self) -> dict[str, tuple[float, list[str], courses.Piece]]:
-        """Of each noise, by the test's name: at which part of linear theory it fails, what fails, and the dip."""
-        return {name: courses.middle_dip(self.specimen, dips) for name, (dips, _) in self.noises.items()}
+    def middle(self) -> dict[Random, tuple[float, list[str], courses.Piece]]:
+        """Of each noise at its unit: at which part of linear theory it fails, what fails, and the dip."""
+        return {test: courses.middle_dip(self.specimen, dips) for test, (dips, _) in self.noises.items()}
 
     def turn(self, test: Test, number: int, expected: float) -> float:
+        """Return what `sought` does: of noises that differ in level alone once for all."""
+        if not isinstance(test, Random):
+            return self.sought(test, number, expected)
+        key = test.unit, *self.surfaces[test.name].scores[number]
+        if key not in self.turned:
+            # The first of them to ask, whatever its level, finds the same to the last bit.
+            self.turned[key] = self.sought(test, number, round(expected, 9))
+        return self.turned[key]
+
+    def sought(self, test: Test, number: int, expected: float) -> float:
         """Return the logarithm of the level that fails in the component in a draw by that of linear theory.
 
         It is sought where the relay as its file says fails: beside the weakest frequency by as much, in the same dip;
@@ -306,8 +320,8 @@ class Position:
             tried = trials.sine_tried(specimen, test, frequency)
         else:
             if isinstance(test, Random):
-                piece, sign = self.middle[test.name][2], 1.0
-                linear = response.course(piece.course, sign, lasting) / self.noises[test.name][1]
+                piece, sign = self.middle[test.unit][2], 1.0
+                linear = response.course(piece.course, sign, lasting) / self.noises[test.unit][1]
             else:
                 assert isinstance(test, Transient)
                 ways = [(sign, each) for way, sign in test.directions.items() for each in self.pieces[test.name][way]]
