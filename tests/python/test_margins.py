@@ -577,6 +577,14 @@ def test_noises_that_differ_in_level_alone_are_sought_once() -> None:
     assert len(own.noises) == 1
 
 
+def test_sines_that_differ_in_level_alone_are_sought_once() -> None:
+    louder = replace(scaled(SINE, 1.5), name="louder")
+    both, alone = placed(described(ROUGH), SINE, louder), placed(described(ROUGH), SINE)
+    assert both.weakest["sine"].factor == pytest.approx(1.5 * both.weakest["louder"].factor, rel=1e-9)
+    assert both.weakest["sine"] == alone.weakest["sine"]
+    assert both.specimen.found.keys() == alone.specimen.found.keys()
+
+
 @pytest.mark.parametrize(("gap", "told"), [(1e-4, True), (1e-3, False)])
 def test_a_fixed_contact_that_follows_the_spring_to_the_open_one_is_told(gap: float, told: bool) -> None:
     blade = str(ROOT / "scenes/springs/reed-blade.toml")

@@ -7,7 +7,6 @@ relay is, at both ends of each parameter that matters, and at the limit between 
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -100,8 +99,8 @@ class Position:
     shared: Shared = field(default_factory=Shared, init=False, repr=False)
     decisive: dict[str, tuple[float, courses.Piece]] = field(default_factory=dict, init=False, repr=False)
     """Of long courses, by the test's name: the sign of its direction, and what is around the dip that fails first."""
-    turned: dict[Any, float] = field(default_factory=dict, init=False, repr=False)
-    """What `sought` returns of noises, by their units and the scores of the draw."""
+    specimens: dict[tuple[float, ...], trials.Specimen] = field(default_factory=dict, init=False, repr=False)
+    """Relays of draws, by their scores."""
 
     def named(self, test: Test) -> str:
         """Return what a test is of, in words."""
@@ -289,11 +288,10 @@ class Position:
         """Return what `sought` does: of noises that differ in level alone once for all."""
         if not isinstance(test, Random):
             return self.sought(test, number, expected)
-        key = test.unit, *self.surfaces[test.name].scores[number]
-        if key not in self.turned:
-            # The first of them to ask, whatever its level, finds the same to the last bit.
-            self.turned[key] = self.sought(test, number, round(expected, 9))
-        return self.turned[key]
+        key = test.unit, tuple(self.surfaces[test.name].scores[number])
+        # The first of them to ask, whatever its level, finds the same to the last bit.
+        found: float = self.specimen.once(key, lambda: self.sought(test, number, round(expected, 9)))
+        return found
 
     def sought(self, test: Test, number: int, expected: float) -> float:
         """Return the logarithm of the level that fails in the component in a draw by that of linear theory.
@@ -311,7 +309,8 @@ class Position:
             self.shared.tried[draw] = {**self.values, **values}, self.responses(values)
         values, responses = self.shared.tried[draw]
         response, lasting = responses[self.part], self.specimen.lasting
-        specimen = replace(self.specimen, values=values, response=response)
+        own = replace(self.specimen, values=values, response=response)
+        specimen = self.specimens.setdefault(draw, own)
         if isinstance(test, Sine):
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             weakest = self.weakest[test.name]

@@ -1,13 +1,13 @@
 """The component in tests: what it observes, steady vibration and sweeps; `courses` has the others."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import cache, cached_property, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from relay_contact.component import Array, Component, Contact, Values, sine
+from relay_contact.component import Array, Component, Contact, Values, sine, warnings_kept
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
 from relay_contact.qualification.excitation import Sine
@@ -53,6 +53,18 @@ class Specimen:
     response: Response
     """Of the part."""
     part: str = CONTACT
+    found: dict[Any, Any] = field(default_factory=dict, init=False, repr=False)
+    """What `once` has found, and warnings."""
+
+    def once(self, key: tuple[Any, ...], run: Callable[[], Any]) -> Any:  # noqa: ANN401
+        """Return what a run finds, or has found by its key: tests that differ in level alone search the same."""
+        if key not in self.found:
+            with warnings_kept() as warnings:
+                self.found[key] = run(), warnings
+        found, warnings = self.found[key]
+        for message in warnings.values():
+            self.component.warn(message)
+        return found
 
     @cached_property
     def rest(self) -> Rest:
@@ -215,12 +227,18 @@ def sweep(
     return side_by_side(at, list(zip(frequencies, np.min(least, axis=0), strict=True)))
 
 
+def rounded(*values: float) -> tuple[float, ...]:
+    """Return values that are equal where only rounding has set them apart."""
+    return tuple(float(f"{value:.12g}") for value in values)
+
+
 def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     """Return what tells what of the part fails in steady vibration at a frequency (Hz), by factors of the level."""
     amplitude = float(test.amplitude(np.array(frequency)))
 
     def tried(factor: float) -> tuple[Lengths, float]:
-        lengths, _, ahead = vibrated(specimen, frequency, factor * amplitude)
+        (level,) = rounded(factor * amplitude)
+        lengths, _, ahead = specimen.once((frequency, level), lambda: vibrated(specimen, frequency, level))
         return specimen.own(lengths), ahead
 
     return tried
@@ -242,9 +260,21 @@ def swept(
     # Of the excitation: without a limit 0.
     stroke = (test.double_amplitude or 0.0) / 2
     most = G * test.acceleration if test.acceleration else float(test.amplitude(np.array(high)))
+    if float(test.amplitude(np.array(low))) == most:
+        stroke = 0.0
+    given = frequency, high, low, lasting, *rounded(factor * most, factor * stroke)
+    found: tuple[Lengths, float, float] = specimen.once(given, lambda: descended(specimen, *given))
+    return found
+
+
+def descended(
+    specimen: Specimen, frequency: float, high: float, low: float, lasting: float, most: float, stroke: float
+) -> tuple[Lengths, float, float]:
+    """Sweep from a high frequency (Hz) to a low one in a time (s), by `most` (m/s2) within a stroke (m)."""
+    settling = specimen.response.settling
     values: Values = {
-        "effects.excitation": "LogSweep", "excitation.amplitude": factor * most, "excitation.frequency": high,
-        "excitation.endFrequency": low, "excitation.duration": lasting, "excitation.displacementLimit": factor * stroke,
+        "effects.excitation": "LogSweep", "excitation.amplitude": most, "excitation.frequency": high,
+        "excitation.endFrequency": low, "excitation.duration": lasting, "excitation.displacementLimit": stroke,
     }  # fmt: skip
     with specimen.start(values) as contact, contact.explained():
         # Until its sudden start is forgotten.
