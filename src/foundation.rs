@@ -85,7 +85,6 @@ impl Model {
                 resolution,
                 inertia: inertia(&modes),
                 memory,
-                compliance: modes.iter().map(Mode::compliance).sum(),
                 scene: scene.clone(),
                 section,
                 preload,

@@ -88,8 +88,6 @@ pub struct Model {
     pub(crate) inertia: f64,
     /// Time in which a velocity of the open spring becomes a displacement, s: 1 / omega_1.
     pub(crate) memory: f64,
-    /// Static displacement of the tip per force on it, m/N: that of the modes.
-    pub(crate) compliance: f64,
     /// Lowest natural frequency with the closed contacts as springs, Hz.
     pub frequency: f64,
     /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and the file.
@@ -143,7 +141,6 @@ impl Model {
         change(&mut self);
         self.modes.truncate(MAX_MODES);
         self.closed_loop = None;
-        self.compliance = self.modes.iter().map(Mode::compliance).sum();
         self.resolution = Resolution::default();
         let tolerance = self.scene.solver.effective_tolerance();
         self.tolerance = Tolerance::new(tolerance, self.force_scale);
@@ -336,6 +333,11 @@ impl Model {
     pub(crate) fn displacement(&self, port: usize, mode: usize) -> f64 {
         let shape = self.ports.get(port).map(|port| &port.shape);
         shape.and_then(|shape| shape.get(mode)).copied().unwrap_or_default()
+    }
+
+    /// The port of a link.
+    pub(crate) fn port_of(&self, link: usize) -> Option<&Port> {
+        self.ports.get(self.links.get(link)?.port)
     }
 
     /// Velocity of a port per impulse on it, 1/kg.

@@ -106,6 +106,7 @@ impl<const S: usize> Whole<'_, S> {
         let (Some(start), Some(nodes)) = (self.state.links.get(CONTACT), self.trial.links.get(CONTACT)) else {
             return 0.0;
         };
+        let Some(port) = model.port_of(CONTACT) else { return 0.0 };
         let polynomial = collocation.through(model.simd, start.approach, &nodes.approaches);
         let wrong = |x: f64, rate: f64| (rate * length - value_and_slope(&polynomial, x - 1.0).1).abs();
         let mut before = (0.0, wrong(0.0, start.rate));
@@ -119,7 +120,7 @@ impl<const S: usize> Whole<'_, S> {
             // Rounding of the polynomial, which no shorter step reduces.
             return 0.0;
         }
-        most / model.compliance
+        most / port.compliance
     }
 }
 

@@ -106,7 +106,7 @@ pub(crate) fn advance<const S: usize>(model: &Model, state: &mut State, trial: &
         return;
     }
     let links = || model.links.iter().zip(&trial.links);
-    if let Some(port) = model.links.get(CONTACT).and_then(|contact| model.ports.get(contact.port)) {
+    if let Some(port) = model.port_of(CONTACT) {
         error.disturb(port, trial.slow_error * length);
     }
     if length > SEEN {

@@ -11,7 +11,7 @@ use crate::state::State;
 /// Opens or closes a contact at the instant of the state. Short steps begin anew.
 pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut Events) {
     let (Some(link), time) = (model.links.get(index), state.time) else { return };
-    if let Some(port) = model.ports.get(link.port) {
+    if let Some(port) = model.port_of(index) {
         if let Some(law) = link.contact() {
             state.force_error.keep((law.firm, law.damping), port, model.force_scale);
         }
@@ -24,7 +24,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     let touch = link.contact().filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));
     if at.force > 0.0
-        && let Some(port) = model.ports.get(link.port)
+        && let Some(port) = model.port_of(index)
     {
         state.force_error.jump(&model.modes, port, at.force / at.rate);
     }
