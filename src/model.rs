@@ -340,11 +340,6 @@ impl Model {
         self.ports.get(self.links.get(link)?.port)
     }
 
-    /// Velocity of a port per impulse on it, 1/kg.
-    pub(crate) fn mobility_of(&self, port: usize) -> f64 {
-        self.ports.get(port).map_or(0.0, |port| port.mobility)
-    }
-
     /// Longest step allowed from `time` (s) on by scene and generator, s.
     pub fn longest_step(&self, time: f64) -> f64 {
         let generated = self.generator.longest_step(time);

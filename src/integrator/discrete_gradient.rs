@@ -94,7 +94,9 @@ impl Stepper<'_> {
     /// opens or closes.
     fn switch_after_constant_force(&mut self, trial: &Trial<SHORT>, index: usize, length: f64) -> bool {
         let Some((link, nodes)) = self.model.links.get(index).zip(trial.links.get(index)) else { return false };
-        let (Some(law), end) = (link.contact(), &nodes.end) else { return false };
+        let (Some(law), Some(port), end) = (link.contact(), self.model.port_of(index), &nodes.end) else {
+            return false;
+        };
         let closed = link.engagement(end.approach, end.rate) > 0.0;
         let switched = self.state.links.get(index).is_some_and(|at| at.closed != closed);
         if switched {
@@ -104,7 +106,7 @@ impl Stepper<'_> {
             // The velocity at the end belongs to a constant force: if the contact is nearly a rigid dashpot, the law
             // would overestimate the force.
             let branch = law.closed_branch(link.approach + end.approach, end.rate);
-            let rigid = branch.damping * self.model.mobility_of(link.port) * length > 1.0;
+            let rigid = branch.damping * port.mobility * length > 1.0;
             at.force = if rigid { link.force + end.force } else { branch.force };
         }
         switched

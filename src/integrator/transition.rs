@@ -10,22 +10,18 @@ use crate::state::State;
 
 /// Opens or closes a contact at the instant of the state. Short steps begin anew.
 pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut Events) {
-    let (Some(link), time) = (model.links.get(index), state.time) else { return };
-    if let Some(port) = model.port_of(index) {
-        if let Some(law) = link.contact() {
-            state.force_error.keep((law.firm, law.damping), port, model.force_scale);
-        }
-        state.force_error.begin(&model.modes, port);
+    let (Some(link), Some(port), time) = (model.links.get(index), model.port_of(index), state.time) else { return };
+    if let Some(law) = link.contact() {
+        state.force_error.keep((law.firm, law.damping), port, model.force_scale);
     }
+    state.force_error.begin(&model.modes, port);
     let Some(at) = state.links.get_mut(index) else { return };
     at.closed = !at.closed;
     let closed = at.closed;
     log.record(log::Event { time, closes: closed, link: index });
     let touch = link.contact().filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));
-    if at.force > 0.0
-        && let Some(port) = model.port_of(index)
-    {
+    if at.force > 0.0 {
         state.force_error.jump(&model.modes, port, at.force / at.rate);
     }
     if closed {
@@ -113,11 +109,11 @@ pub(crate) fn step_after_jump(model: &Model, state: &State) -> f64 {
 fn first_closed_step(model: &Model, state: &State, index: usize) -> f64 {
     let mut h = model.first_step(state.time);
     let (Some(link), Some(at)) = (model.links.get(index), state.links.get(index)) else { return h };
-    let (Some(law), d, speed) = (link.contact(), link.approach + at.approach, at.rate.abs()) else { return h };
-    let mobility = model.mobility_of(link.port);
+    let (Some(law), Some(port)) = (link.contact(), model.port_of(index)) else { return h };
+    let (d, speed) = (link.approach + at.approach, at.rate.abs());
     for _ in 0..40 {
         let branch = law.closed_branch(d + speed * h, at.rate);
-        let gain = mobility * h * (branch.damping + 0.5 * h * branch.stiffness.abs());
+        let gain = port.mobility * h * (branch.damping + 0.5 * h * branch.stiffness.abs());
         if 0.1 * (branch.force - at.force).abs() * gain / (1.0 + gain) <= model.tolerance.step {
             break;
         }

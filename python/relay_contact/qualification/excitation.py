@@ -95,6 +95,11 @@ def sloped(points: Any) -> Any:  # noqa: ANN401
     return known
 
 
+def rounded(value: float) -> float:
+    """Return a value equal to those that only rounding has set apart from it."""
+    return float(f"{value:.12g}")
+
+
 def straight(points: tuple[Breakpoint, ...], frequency: Array) -> Array:
     """Return values at frequencies (Hz): straight lines between breakpoints on logarithmic scales, 0 beyond them."""
     corners, values = np.array(points).T
@@ -319,7 +324,7 @@ class Random(Test):
         """The test at a level of its own, the same for all that differ in their level alone."""
         # A tone has a level of its own.
         first = 1.0 if self.sines else self.density[0][1]
-        density = tuple((frequency, float(f"{own / first:.12g}")) for frequency, own in self.density)
+        density = tuple((frequency, rounded(own / first)) for frequency, own in self.density)
         return replace(self, name="noise", clause="", evidence=LEVELS[-1], density=density, rms=overall(density))
 
     def spectrum(self, frequency: Array) -> Array:

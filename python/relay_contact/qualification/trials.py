@@ -10,7 +10,7 @@ import numpy as np
 from relay_contact.component import Array, Component, Contact, Values, sine, warnings_kept
 from relay_contact.figures import GRAVITY as G
 from relay_contact.many import side_by_side
-from relay_contact.qualification.excitation import Sine
+from relay_contact.qualification.excitation import Sine, rounded
 from relay_contact.qualification.level import MOST, Lengths, Tried, threshold
 from relay_contact.qualification.parts import CLOSED, CONTACT, OPEN, STOP, Part, Rest, at_rest, parts
 from relay_contact.qualification.response import Response
@@ -227,17 +227,12 @@ def sweep(
     return side_by_side(at, list(zip(frequencies, np.min(least, axis=0), strict=True)))
 
 
-def rounded(*values: float) -> tuple[float, ...]:
-    """Return values that are equal where only rounding has set them apart."""
-    return tuple(float(f"{value:.12g}") for value in values)
-
-
 def sine_tried(specimen: Specimen, test: Sine, frequency: float) -> Tried:
     """Return what tells what of the part fails in steady vibration at a frequency (Hz), by factors of the level."""
     amplitude = float(test.amplitude(np.array(frequency)))
 
     def tried(factor: float) -> tuple[Lengths, float]:
-        (level,) = rounded(factor * amplitude)
+        level = rounded(factor * amplitude)
         lengths, _, ahead = specimen.once((frequency, level), lambda: vibrated(specimen, frequency, level))
         return specimen.own(lengths), ahead
 
@@ -262,7 +257,7 @@ def swept(
     most = G * test.acceleration if test.acceleration else float(test.amplitude(np.array(high)))
     if float(test.amplitude(np.array(low))) == most:
         stroke = 0.0
-    given = frequency, high, low, lasting, *rounded(factor * most, factor * stroke)
+    given = frequency, high, low, lasting, rounded(factor * most), rounded(factor * stroke)
     found: tuple[Lengths, float, float] = specimen.once(given, lambda: descended(specimen, *given))
     return found
 

@@ -66,12 +66,7 @@ pub(crate) fn settle(model: &Model, state: &mut State, length: f64) {
         return;
     }
     let closed = state.links.iter().position(|at| at.closed);
-    let Some((link, port)) = closed.and_then(|index| {
-        let link = model.links.get(index)?;
-        Some((link, model.ports.get(link.port)?))
-    }) else {
-        return;
-    };
+    let Some((link, port)) = closed.and_then(|index| model.links.get(index).zip(model.port_of(index))) else { return };
     let (_, velocity) = port.motion::<Separate>(&state.modes);
     let bound = RETURNED * model.tolerance.force * length;
     let impulse = (-state.energy_surplus / velocity).clamp(-bound, bound);
@@ -81,7 +76,7 @@ pub(crate) fn settle(model: &Model, state: &mut State, length: f64) {
     for (at, b) in state.modes.iter_mut().zip(&port.shape) {
         at.v += b * impulse;
     }
-    let gained = model.mobility_of(link.port) * impulse;
+    let gained = port.mobility * impulse;
     for (other, at) in model.links.iter().zip(&mut state.links) {
         if other.port == link.port {
             at.rate -= other.sense * gained;
