@@ -30,6 +30,8 @@ pub struct ForceError {
     pub largest: f64,
     /// The deviation, of size 1; zero until a contact first opens or closes.
     pub deviation: Deviation,
+    /// What it adds to [the way slipped](crate::contact::friction::Slip::way), m.
+    pub slip: f64,
     /// Logarithm of its size, were it not brought back to 1.
     pub growth: f64,
     /// The largest growth of it in flight.
@@ -82,6 +84,7 @@ impl ForceError {
             greatest,
             largest,
             deviation,
+            slip,
             growth,
             largest_growth,
             by_slip,
@@ -92,7 +95,7 @@ impl ForceError {
         } = self;
         let errors = [greatest, largest, largest_growth, by_slip].into_iter();
         let mut errors = errors.chain([largest_by_slip, size, by_deviation, unresolved]);
-        let mut others = deviation.iter().flat_map(|at| [at.q, at.v]).chain([*growth]);
+        let mut others = deviation.iter().flat_map(|at| [at.q, at.v]).chain([*slip, *growth]);
         others.all(f64::is_finite) && errors.all(|error| (0.0..f64::INFINITY).contains(error))
     }
 }

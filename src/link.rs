@@ -78,6 +78,11 @@ impl Port {
         states.get(self.modes.start..end).unwrap_or_default()
     }
 
+    /// Displacement (m) of the first modes.
+    pub fn displacement(&self, states: &[ModeState]) -> f64 {
+        self.shape.iter().zip(states).map(|(b, at)| b * at.q).sum()
+    }
+
     /// Displacement (m) and velocity (m/s).
     #[inline(always)]
     pub fn motion<A: Arithmetic>(&self, modes: &ModeStates) -> (f64, f64) {

@@ -74,16 +74,15 @@ impl Model {
         }
     }
 
-    /// Begins or ends slip. The trial force is then the limit, to the last digit.
+    /// Begins or ends slip. Without a damper the tangential spring is at its limit then, to the last digit. With one it stays as it is:
+    /// after a jump of the velocity its limit moves so fast that the rounding of time would deflect it.
     pub(crate) fn change_phase(&self, state: &mut State, phase: Phase) {
-        let before = state.slip.phase.sign();
-        if let Some(sign) = phase.sign().or(before)
-            && let Some((friction, law, contact, along, slip)) = self.rubbing(state)
+        let sign = phase.sign().or(state.slip.phase.sign()).unwrap_or_default();
+        if let Some((friction, law, contact, along, slip)) = self.rubbing(state)
+            && law.damping == 0.0
         {
             let d = self.preload.indentation + contact.approach;
-            let limit = friction.limit_deflection(law, sign, d, contact.rate);
-            let lag = law.damping * -along.rate;
-            slip.way = -along.approach - (limit - lag);
+            slip.way = -along.approach - friction.limit_deflection(law, sign, d, 0.0);
         }
         state.slip.phase = phase;
         self.set_friction_force(state);

@@ -6,7 +6,7 @@
 //! of the errors: each step adds what slow modes feel of its own, each opening and closing what a wrong force or a wrong instant
 //! leaves in the motion, which would die out in a contact that stayed closed.
 //!
-//! Not in it are where friction sticks and how an axial force follows the deflection; in exact steps of a linear contact it rests.
+//! Not in it is how an axial force follows the deflection; in exact steps of a linear contact it rests.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -45,17 +45,31 @@ impl ForceError {
         for (at, shape) in deviation.iter_mut().zip(&port.shape) {
             at.v += shape / by_impulse;
         }
-        self.size *= self.set(modes, deviation);
+        self.size *= self.set(modes, deviation, self.slip);
     }
 
     /// As a contact at this port closes its force jumps, by so much per velocity (N s/m): what is ahead feels it earlier.
     pub(crate) fn jump(&mut self, modes: &[Mode], port: &Port, damping: f64) {
         let mut deviation = self.deviation;
-        let ahead: f64 = deviation.iter().zip(&port.shape).map(|(at, shape)| shape * at.q).sum();
+        let ahead = port.displacement(&deviation);
         for (at, shape) in deviation.iter_mut().zip(&port.shape) {
             at.v -= shape * damping * ahead;
         }
-        self.grow(modes, deviation);
+        self.grow(modes, deviation, self.slip);
+    }
+
+    /// As a contact at this port closes friction holds it, where the deviation takes it earlier or later; so far it goes along the spring
+    /// per approach, 1.
+    pub(crate) fn hold(&mut self, port: &Port, along: f64) {
+        let slip = self.slip + along * port.displacement(&self.deviation);
+        if slip.is_finite() {
+            self.slip = slip;
+        }
+    }
+
+    /// What the deviation adds to the deflection of the tangential spring of a contact that rubs at this port, m.
+    pub(crate) fn tangential(&self, port: Option<&Port>) -> f64 {
+        port.map_or(0.0, |port| port.displacement(&self.deviation)) - self.slip
     }
 
     /// A contact of this stiffness (N/m) and damping time (s) at this port opens or closes: of the energy of the largest error of its
@@ -81,28 +95,30 @@ impl ForceError {
     }
 
     /// The deviation becomes this: as much as it grows do the errors.
-    fn grow(&mut self, modes: &[Mode], deviation: Deviation) {
-        let size = self.set(modes, deviation);
+    fn grow(&mut self, modes: &[Mode], deviation: Deviation, slip: f64) {
+        let size = self.set(modes, deviation, slip);
         self.size = (self.size * size).min(f64::MAX);
         self.growth += size.ln();
     }
 
     /// Sets the deviation to this, brought to size 1; returns what its size was, the root of its energy. Nothing changes where that is
     /// no number, as in a step without a solution.
-    fn set(&mut self, modes: &[Mode], deviation: Deviation) -> f64 {
+    fn set(&mut self, modes: &[Mode], deviation: Deviation, slip: f64) -> f64 {
         let size = energy(modes.iter().zip(&deviation)).sqrt();
         let inverse = 1.0 / size;
-        if !(size > 0.0 && size.is_finite() && inverse.is_finite()) {
+        let slip = slip * inverse;
+        if !(size > 0.0 && [size, inverse, slip].into_iter().all(f64::is_finite)) {
             return 1.0;
         }
         self.deviation = deviation.map(|at| ModeState { q: at.q * inverse, v: at.v * inverse });
+        self.slip = slip;
         size
     }
 }
 
 /// Takes the deviation to the end of an accepted step of `length` seconds, from which the state has not moved.
 pub(crate) fn advance<const S: usize>(model: &Model, state: &mut State, trial: &Trial<S>, length: f64) {
-    let (closed, error) = (state.contact().closed, &mut state.force_error);
+    let (closed, phase, error) = (state.contact().closed, state.slip.phase, &mut state.force_error);
     if !error.deviates() {
         return;
     }
@@ -115,7 +131,16 @@ pub(crate) fn advance<const S: usize>(model: &Model, state: &mut State, trial: &
         let most = conducting.fold(0.0_f64, |most, (_, nodes)| most.max(end(&nodes.deviation).abs()));
         error.note_deviation(most, model.force_scale);
     }
-    error.grow(&model.modes, trial.deviation);
+    let rubbing = model.friction().and_then(|(rubbing, _)| model.port_of(rubbing));
+    let slip = rubbing.map_or(0.0, |port| {
+        let (along, spring) = (port.displacement(&trial.deviation), &trial.slip_deviation);
+        match phase.sign() {
+            _ if !closed => along,
+            Some(_) => along - end(&spring.deflections) - spring.left(length, model.law.damping),
+            None => error.slip,
+        }
+    });
+    error.grow(&model.modes, trial.deviation, slip);
     // Else part of its energy is in the contact.
     let draws = |link: &Link| matches!(link.law, LinkLaw::Magnet(_));
     let drawn = links().any(|(link, nodes)| draws(link) && nodes.deviation != [0.0; S]);
@@ -137,7 +162,7 @@ mod tests {
         error.begin(&modes, &port);
         for impulse in [f64::NAN, f64::INFINITY] {
             error.disturb(&port, impulse);
-            error.grow(&modes, Deviation::default());
+            error.grow(&modes, Deviation::default(), 0.0);
             error.note_deviation(0.0, 1.0);
             assert!(error.is_sound(), "{impulse}: {error:?}");
             // Nothing is known of the first, all is lost with the second.
@@ -162,7 +187,7 @@ mod tests {
         let mut faded = error.deviation;
         let [at, ..] = &mut faded;
         at.v *= 1e-4;
-        error.grow(&modes, faded);
+        error.grow(&modes, faded, 0.0);
         error.begin(&modes, &contact);
         assert!((part(&error) - 0.5).abs() < 1e-3, "{}", part(&error));
     }

@@ -4,7 +4,7 @@ use crate::contact::friction::Phase;
 use crate::excitation::drive::Drive;
 use crate::integrator::constants::{LEAST_SHRINK, WORTH};
 use crate::integrator::events::log::{self, Events};
-use crate::link::LinkLaw;
+use crate::link::{CONTACT, LinkLaw};
 use crate::model::Model;
 use crate::state::State;
 
@@ -17,7 +17,7 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     state.force_error.begin(&model.modes, port);
     let Some(at) = state.links.get_mut(index) else { return };
     at.closed = !at.closed;
-    let closed = at.closed;
+    let (closed, rate) = (at.closed, at.rate);
     log.record(log::Event { time, closes: closed, link: index });
     let touch = link.contact().filter(|_| closed);
     at.force = touch.map_or(0.0, |law| law.force_at_touch(at.rate));
@@ -33,6 +33,10 @@ pub(crate) fn switch(model: &Model, state: &mut State, index: usize, log: &mut E
     }
     state.lengths.last = 0.0;
     state.lengths.short = if closed { first_closed_step(model, state, index) } else { step_after_jump(model, state) };
+    if let Some((rubbing, _)) = model.friction().filter(|_| closed && index == CONTACT) {
+        let along = state.links.get(rubbing).map_or(0.0, |along| -along.rate);
+        state.force_error.hold(port, along / rate);
+    }
     model.settle_friction(state);
 }
 

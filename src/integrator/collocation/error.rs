@@ -40,7 +40,8 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
     pub(super) fn estimate<A: Arithmetic>(&self, solution: &Solution<'_, S, L>, trial: &mut Trial<S>) {
         let Self { linked, step, collocation, free, .. } = *self;
         let Linked { model, state, .. } = *linked;
-        let defects = self.defects::<A>(trial, self.is_parting(trial));
+        let parting = self.parting(trial);
+        let defects = self.defects::<A>(trial, parting.is_some());
         let mut own = [NodalMotion::ZERO; L];
         for a in 0..in_use::<L>(linked.unknowns.count) {
             let unknown = linked.unknowns.get(a);
@@ -94,7 +95,8 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         let base = free.start_defect.abs();
         let missed = model.inertia * free.missed_mean;
         let along = model.friction().map_or(0.0, |(_, friction)| friction.inertia);
-        let kinked = kinked(collocation, state, step.length, sum);
+        let since = (state.time - state.last_kink) / step.length;
+        let kinked = kinked(collocation, parting.map_or(since, |ahead| since.min(ahead)), sum);
         let slow = 3.0 * squares / largest + kinked + missed;
         trial.slow_error = slow;
         let lasting = of_way + along * free.missed_mean + kept + slow * reaction;
@@ -109,20 +111,22 @@ impl<const S: usize, const L: usize> Judged<'_, S, L> {
         trial.rounding = rounding;
     }
 
-    /// Whether a contact will be indented no longer before another step of this length has ended. A law that is softer the less it is
-    /// indented lets the approach go there like the power `1 / p` of the time left.
+    /// In how many further steps of this length a contact will be indented no longer, if in less than one. A law that is softer the less
+    /// it is indented lets the approach go there like the power `1 / p` of the time left.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links of the model")]
-    fn is_parting(&self, trial: &Trial<S>) -> bool {
-        let mut parting = false;
+    fn parting(&self, trial: &Trial<S>) -> Option<f64> {
+        let mut parting = 1.0_f64;
         for a in 0..in_use::<L>(self.linked.unknowns.count) {
             let index = self.linked.unknowns.get(a).link;
             let (link, nodes) = (&self.linked.model.links[index], &trial.links[index]);
             let Some(law) = link.contact() else { continue };
             let (d, way) = (link.approach + end(&nodes.approaches), self.step.length * end(&nodes.rates));
-            parting |= law.exponent > 1.0 && d > 0.0 && d + law.exponent * way < 0.0;
+            if law.exponent > 1.0 && d > 0.0 && way < 0.0 {
+                parting = parting.min(-d / (law.exponent * way));
+            }
         }
-        parting
+        (parting < 1.0).then_some(parting)
     }
 
     /// The defects of the unknown forces, and of those that follow them. Where forces bend, or a contact is about to part (`parting`), a
@@ -250,12 +254,12 @@ pub(crate) fn of_rounding<const S: usize>(model: &Model, state: &State, trial: &
     rounding * of_links.sum::<f64>()
 }
 
-/// Error of slow modes, N, that a defect (N) of the force at the start of a step of `length` seconds makes near a kink, where
-/// the force is not smooth; by the root of time it is.
+/// Error of slow modes, N, that a defect (N) of the force at the start of a step makes so many steps before or after a kink, where the
+/// force is not smooth; by the root of time it is.
 #[inline(always)]
-fn kinked<const S: usize>(collocation: &Collocation<S>, state: &State, length: f64, defect: f64) -> f64 {
+fn kinked<const S: usize>(collocation: &Collocation<S>, distance: f64, defect: f64) -> f64 {
     match collocation.variable {
-        Variable::Time => KINKED * defect * analytic::<S>((state.time - state.last_kink) / length),
+        Variable::Time => KINKED * defect * analytic::<S>(distance),
         Variable::Root => 0.0,
     }
 }

@@ -224,7 +224,11 @@ impl<'a, const S: usize, const L: usize> Linked<'a, S, L> {
     /// Motion of the unknown links under forces, from that without a change of them.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "unknowns in use")]
-    fn under<A: Arithmetic>(&self, free: &[NodalMotion<S>; L], forces: &Stacked<S, L>) -> [NodalMotion<S>; L] {
+    pub(super) fn under<A: Arithmetic>(
+        &self,
+        free: &[NodalMotion<S>; L],
+        forces: &Stacked<S, L>,
+    ) -> [NodalMotion<S>; L] {
         let mut motions = *free;
         for b in 0..in_use::<L>(self.unknowns.count) {
             let less = scaled(&forces[b], -1.0);

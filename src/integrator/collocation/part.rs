@@ -230,6 +230,8 @@ pub(crate) fn shorten<const S: usize>(
         let start = state.links.get(rubbing).map_or(0.0, |along| -along.approach - state.slip.way - trial.slip.fading);
         trial.slip.deflections = with_start(start, &trial.slip.deflections);
         trial.slip.rates = nodal(&trial.slip.rates);
+        let start = state.force_error.tangential(model.port_of(rubbing)) - trial.slip_deviation.fading;
+        trial.slip_deviation.deflections = with_start(start, &trial.slip_deviation.deflections);
     }
     trial.modes = *modes;
     trial.deviation = *deviation;

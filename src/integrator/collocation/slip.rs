@@ -8,7 +8,7 @@
 //! ```
 
 use crate::contact::friction::Friction;
-use crate::integrator::collocation::coefficients::StepCoefficients;
+use crate::integrator::collocation::coefficients::{NodalMotion, StepCoefficients};
 use crate::integrator::collocation::elimination::solve;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::Shapes;
@@ -108,6 +108,25 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
         let spring = if law.damping > 0.0 { *slip } else { friction.limit_deflection(law, sign, *across, 0.0) };
         *slip = -along - spring;
     }
+}
+
+/// Sets what the deviation adds to the slip, by what it adds to the motion of the contact.
+#[inline(always)]
+pub(super) fn follow_deviation<const S: usize, A: Arithmetic>(
+    model: &Model,
+    state: &State,
+    (step, collocation): (StepCoefficients<'_, S>, &Collocation<S>),
+    contact: &NodalMotion<S>,
+    trial: &mut Trial<S>,
+) {
+    let Some((sign, (rubbing, friction))) = state.slip.phase.sign().zip(model.friction()) else { return };
+    let Some(following) = step.following.first_chunk::<S>() else { return };
+    let start = state.force_error.tangential(model.port_of(rubbing));
+    let mut ahead = [0.0; S];
+    for (ahead, (d, rate)) in ahead.iter_mut().zip(contact.d.iter().zip(&contact.rate)) {
+        *ahead = friction.limit_deflection(&model.law, sign, *d, *rate) - start;
+    }
+    trial.slip_deviation = tends::<S, A>(collocation, following, (start, &ahead), (step.length, model.law.damping));
 }
 
 /// Deflection `z` from a `start` (m), and in place of the slip its velocity, as it follows one that is `ahead` of the start (m) by so

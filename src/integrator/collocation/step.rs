@@ -9,9 +9,9 @@ use crate::integrator::collocation::coefficients::{EndGroup, NodalMotion, Pairs}
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
-use crate::integrator::collocation::slip::follow;
+use crate::integrator::collocation::slip::{follow, follow_deviation};
 use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
-use crate::link::{MAX_PORTS, MAX_UNKNOWNS};
+use crate::link::{LinkLaw, MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, dot, end, greatest, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
@@ -187,14 +187,24 @@ impl<const S: usize> Step<'_, S> {
         trial: &mut Trial<S>,
     ) {
         let Self { model, state, .. } = *self;
+        let Prepared { step, collocation, .. } = self.prepared;
         let mut own = [NodalMotion::ZERO; L];
         for (own, unknown) in own.iter_mut().zip(self.unknowns.iter()) {
             let link = &model.links[unknown.link];
             let deviation = model.ports[link.port].part(&state.force_error.deviation);
-            let port = self.prepared.step.free_motion::<A>(link.port, deviation);
+            let port = step.free_motion::<A>(link.port, deviation);
             own.add::<A>(-link.sense, &port);
+            if let LinkLaw::Friction(_) = link.law {
+                // Where it sticks.
+                own.d = own.d.map(|d| d + state.force_error.slip);
+            }
         }
-        for (forces, unknown) in linked.answer::<A>(solution, &own).iter().zip(self.unknowns.iter()) {
+        let forces = linked.answer::<A>(solution, &own);
+        if state.slip.phase.sign().is_some() {
+            let contact = linked.under::<A>(&own, &forces)[0];
+            follow_deviation::<S, A>(model, state, (step, collocation), &contact, trial);
+        }
+        for (forces, unknown) in forces.iter().zip(self.unknowns.iter()) {
             trial.links[unknown.link].deviation = *forces;
             if let Some((follower, share)) = unknown.follower {
                 trial.links[follower].deviation = scaled(forces, share);

@@ -24,6 +24,8 @@ pub struct Trial<const S: usize> {
     pub modes: ModeStates,
     /// The deviation there ([`crate::integrator::deviation`]).
     pub deviation: Deviation,
+    /// What the deviation adds to the slip at the nodes.
+    pub slip_deviation: SlipNodes<S>,
     /// Estimate of the error this step adds to the contact force, N.
     pub error: Estimate,
     /// Estimate of the same at instants inside the step, N.
