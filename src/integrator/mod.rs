@@ -85,16 +85,15 @@
 //! - the part of slow modes, which hardly feel the shape, as it is orthogonal to polynomials of low degree: three times `m^2` over the
 //!   largest force (fitted to the impact of a free mass on a Hertz contact), and for the base acceleration the error of the
 //!   quadrature, `S / 2 (S - 1)!^2 / (2 S - 1)!` times `m_a^2` over the largest acceleration;
-//! - after a closing or a jump, where the force moves like the root of time: a share [`constants::KINKED`] of `m`, which falls with
-//!   the distance from the kink as the convergence of a polynomial near a branch point does (Trefethen, Approximation Theory and
-//!   Approximation Practice, 2013, chapters 8 and 19).
+//! - after a closing or a jump, where the force moves like the root of time, and before a contact parts, where its law has a branch
+//!   point: a share [`constants::KINKED`] of `m`, which falls with the distance from there as the convergence of a polynomial near a
+//!   branch point does (Trefethen, Approximation Theory and Approximation Practice, 2013, chapters 8 and 19).
 //!
 //! The last two are reduced by `g / (1 + g)`, `g` the force of the law at the end of the step per force throughout it, the greatest of
 //! all contacts; that of one that is open or hardly touches is at the force scale, as it will meet what these errors make. Where
 //! inputs have just changed, forces bend, and an `m` that passes through zero shows nothing of it: there `m` is at least what the
-//! polynomials through fewer nodes let expect, and the next term of theirs in the step before a contact parts, where its law has a
-//! branch point. In flight the estimate is what `m_a` and the quadrature do to the approach, times the
-//! stiffness the contact would have at the force scale.
+//! polynomials through fewer nodes let expect, and the next term of theirs in the step before a contact parts. In flight the estimate is
+//! what `m_a` and the quadrature do to the approach, times the stiffness the contact would have at the force scale.
 //!
 //! A step that ends inside, at an event, has a larger error, as the shape is not orthogonal to anything there. A blow makes it a
 //! hundred times larger, so at an opening it has to be below [`constants::AT_EVENT`] of the error allowed in a step. An estimate below
