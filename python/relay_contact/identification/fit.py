@@ -13,9 +13,10 @@ from scipy.special import stdtrit
 
 from relay_contact.component import Array, Values
 from relay_contact.files import RelayContactError
-from relay_contact.identification.measurement import BOUNCE, RELATIVE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import BOUNCE, RELATIVE, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.identification.ringdown import RingDown, ring_down, shapes
+from relay_contact.spring import STIFFNESS
 
 ROUGH = 0.05
 """Scatter until it is known, as a part of the value (of the largest static force, of the frequency of a ring-down): the
@@ -28,8 +29,20 @@ NEAR = 3e-3
 ENOUGH = 1e-8
 """Relative change of the sum of squares at which a search ends, and 100 times that of the logarithms."""
 TRIALS = 100
-STARTS = tuple(np.arange(1.0, -5.5, -0.5))  # logarithms of contact.damping at which bounces are tried
+NEARBY = (0.0, *(sign * 0.1 * number for number in range(1, 13) for sign in (1, -1)))
+TRIED = (
+    ("contact.damping", BOUNCE, tuple(np.arange(1.0, -5.5, -0.5))),
+    *((name, RESPONSE, NEARBY) for name in ("beam.youngsModulus", STIFFNESS, "tip.mass")),
+)
+"""Logarithms of parameters that are tried before a search: where the contact does not bounce at all, or a weakly damped
+resonance is on the other side of a frequency that was measured, it finds no way."""
 ROUNDS, CHANGE = 8, 0.005  # of the estimate of the scatter, until it changes by less
+FEWEST = 2.0
+"""Degrees of freedom of a scatter below which its estimate does not fall: a measurement that others hardly check would
+be met ever more closely, and end as exact."""
+HELD = 1.5
+"""Standard deviation of the logarithms, about the relay's file, as long as some of them are not determined: the search
+would go far away along them, and might find another minimum there."""
 TINY = 1e-8  # sensitivity, as a part of the largest, below which there is none
 ALL = 1.96  # standard deviations within which 95 % of a normal distribution lie
 ENDS = {"low": -1.0, "high": 1.0}
@@ -115,6 +128,8 @@ class Fit:
     logarithms: Array = field(default_factory=lambda: np.zeros(0))
     """Of the parameters, then of the calibrations of those measurements that have one."""
     jacobian: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    held: float = np.inf
+    """Standard deviation of the logarithms of the parameters about zero."""
 
     def __post_init__(self) -> None:
         """Begin at the values of the file."""
@@ -152,9 +167,9 @@ class Fit:
         return float(logarithms[len(self.unknowns) + each.place])
 
     def beliefs(self, logarithms: Array) -> Array:
-        """Return the residuals of the calibrations: what their makers say of them."""
+        """Return the residuals of the calibrations, what their makers say of them, and of parameters that are held."""
         parts = [each.measurement.calibration / ALL for each in self.calibrated]
-        return np.asarray(logarithms[len(self.unknowns) :] / np.array(parts))
+        return np.asarray(logarithms / np.array([self.held] * len(self.unknowns) + parts))
 
     def residuals(self, logarithms: Array) -> Array:
         """Return all residuals, relative to the scatter."""
@@ -185,7 +200,8 @@ class Fit:
             self.residuals, start, jacobian, bounds=(low, high), ftol=ENOUGH, xtol=100 * ENOUGH, gtol=None,
             max_nfev=TRIALS,
         )  # fmt: skip
-        if found.status == 0:
+        # What holds the search does not let it go far along what the data do not determine.
+        if found.status == 0 and self.held == np.inf:
             text = "begin from other values in the relay's file"
             raise RelayContactError(f"no least squares after {TRIALS} trials: {text}")
         self.logarithms = found.x
@@ -195,7 +211,6 @@ class Fit:
 
     def run(self) -> None:
         """Find unknowns and scatter together."""
-        self.look_around()
         last = None
         for _ in range(ROUNDS):
             last = self.search(last)
@@ -205,18 +220,19 @@ class Fit:
                 break
 
     def look_around(self) -> None:
-        """Begin where the contact bounces as measured: where it does not at all, a search finds no way to it."""
-        bounces = [each for each in self.sets if each.measurement.kind == BOUNCE]
-        damping = [number for number, each in enumerate(self.unknowns) if each.name == "contact.damping"]
-        if not (bounces and damping):
-            return
+        """Begin where the contact bounces, or the spring resounds, nearly as measured."""
+        kinds = {each.measurement.kind for each in self.sets}
 
-        def far(start: float) -> float:
+        def far(number: int, start: float) -> float:
             at = self.logarithms.copy()
-            at[damping] = start
-            return sum(float((self.left(each, at) ** 2).sum()) for each in bounces)
+            at[number] = start
+            return float((self.residuals(at) ** 2).sum())
 
-        self.logarithms[damping] = min(STARTS, key=far)
+        for name, kind, starts in TRIED:
+            for number, each in enumerate(self.unknowns):
+                if each.name == name and kind in kinds:
+                    within = np.clip(starts, each.low, each.high).tolist()
+                    self.logarithms[number] = min(within, key=lambda start: far(number, start))
 
     def slices(self) -> list[slice]:
         """Return the rows of each measurement."""
@@ -232,8 +248,10 @@ class Fit:
             own = self.jacobian[rows]
             spent = float(np.einsum("ij,jk,ik->", own, covariance, own))
             more, squares = (each.ring.freedom, each.ring.left / each.sigma**2) if each.ring else (0, 0.0)
-            each.freedom = max(1.0, len(own) + more - spent)
-            factor = max(float(np.sqrt(((left[rows] ** 2).sum() + squares) / each.freedom)), 1e-9)
+            freedom = len(own) + more - spent
+            each.freedom = max(1.0, freedom)
+            least = 1e-9 if freedom >= FEWEST else 1.0
+            factor = max(float(np.sqrt(((left[rows] ** 2).sum() + squares) / each.freedom)), least)
             changes.append(abs(np.log(factor)))
             each.sigma *= factor
             self.jacobian[rows] /= factor

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.special import stdtr
 
 from relay_contact.component import Array, Component, nearest
 from relay_contact.files import RelayContactError, read_toml
-from relay_contact.identification.fit import STEP, Fit, Set, Unknown
+from relay_contact.identification.fit import HELD, STEP, Fit, Set, Unknown
 from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
@@ -18,13 +19,13 @@ from relay_contact.spring import PREFIX, STIFFNESS, known
 
 REACH = float(np.log(300.0))
 """Of the search, either way."""
-WIDE = 1.0
-"""Half of a 95 % interval of a logarithm from which on a parameter is not determined: the value may be another."""
+WIDE = float(np.log(2.0))
+"""Half of a 95 % interval of a logarithm from which on a parameter is not determined: it may be twice as large."""
 TOGETHER = 0.95  # correlation from which on it is said
-REGULAR = 4.0  # standard deviations of the correlation of neighbouring residuals from which on it is said
 DRAWN = 60  # values of a fitted curve
 CONTRADICT = 1e-3
-"""Chance below which it is said that frequency and rate of decay of a ring-down do not agree with the other data."""
+"""Chance below which it is said that residuals are alike or one of them far from the others, or that frequency and rate
+of decay of a ring-down do not agree with the other data."""
 SAMPLED = 3.0
 """Rows per period of a ring-down, at least, by the record and by the relay's file: what seems slower than it is would
 have to be twice as fast as the file says."""
@@ -148,16 +149,21 @@ def sought(
 
     `opens`: levels at which the contact opens are those of the component with a contact that does, not a linear one.
     """
-    fit = Fit(laboratory, dict(relay.positions), [Set(each) for each in measurements], parameters)
+    fit = Fit(laboratory, dict(relay.positions), [Set(each) for each in measurements], parameters, held=HELD)
     for each in fit.sets:
         check(each, fit.predicted(each, fit.logarithms))
+    fit.look_around()
     fit.run()
     missing: dict[str, str] = {}
     while True:
         halves = fit.halves()
         wide = np.flatnonzero(halves > WIDE)
         if not len(wide):
-            break
+            if fit.held == np.inf:
+                break
+            fit.held = np.inf
+            fit.run()
+            continue
         # What is known from elsewhere is taken out first: the data then tell the others.
         known = relay.parts(laboratory.component)
         order = [(known.get(fit.unknowns[each].name, np.inf), -halves[each], each) for each in wide]
@@ -212,7 +218,7 @@ def check(each: Set, predicted: Array) -> None:
 def without(fit: Fit, number: int) -> Fit:
     """Return a fit without a parameter, which has the value of the file."""
     left = [each for index, each in enumerate(fit.unknowns) if index != number]
-    smaller = Fit(fit.laboratory, fit.positions, fit.sets, left)
+    smaller = Fit(fit.laboratory, fit.positions, fit.sets, left, held=fit.held)
     smaller.logarithms = np.delete(fit.logarithms, number)
     return smaller
 
@@ -251,7 +257,7 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         found.append(Found(unknown, value, float(sizes[number]), own))
     fitted = [fit.modelled(each, fit.logarithms) for each in fit.sets]
     curves = [curve(fit, each, model) for each, model in zip(fit.sets, fitted, strict=True)]
-    notes = [line for each, model in zip(fit.sets, fitted, strict=True) for line in remarks(fit, each, model)]
+    notes = [line for each in zip(fit.sets, fit.slices(), fitted, strict=True) for line in remarks(fit, *each)]
     notes += [
         f"{one.label} and {other.label} are known better together than alone (correlation {correlation[i, j]:+.3f})"
         for i, one in enumerate(fit.unknowns) for j, other in enumerate(fit.unknowns[:i])
@@ -289,10 +295,22 @@ def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
     return over, fit.modelled(replace(each, measurement=denser, factor=factor), fit.logarithms)
 
 
-def remarks(fit: Fit, each: Set, model: Array) -> list[str]:
+def remarks(fit: Fit, each: Set, rows: slice, model: Array) -> list[str]:
     """Tell where a measurement does not agree with the model."""
-    own, left = each.measurement, each.differences(model)
+    own = each.measurement
+    order = np.argsort(own.over, kind="stable")
+    left = each.differences(model)[order] / each.sigma
+    # Chances of more if it were random: of the correlation of neighbours (R. B. Leipnik, Biometrika 34 (1947) 80-87),
+    # less what the fit makes of it, and of the largest of all (W. R. Thompson, Ann. Math. Stat. 6 (1935) 214-219).
+    number, worst = len(left), int(np.abs(left).argmax())
     together = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), 1e-300))
+    if not each.ring and len(fit.jacobian):
+        slopes = fit.jacobian[rows][order]
+        together += float(np.einsum("ij,jk,ik->", slopes[1:], fit.covariance, slopes[:-1])) / each.freedom
+    alike = stdtr(number + 1, -together * np.sqrt((number + 1) / (1 - min(together**2, 0.999999))))
+    free = max(each.freedom, 1.001)
+    part = min(float(left[worst] ** 2 / free), 0.999999)
+    alone = 2 * number * stdtr(free - 1, -np.sqrt((free - 1) * part / (1 - part)))
     # Of the two residuals of a ring-down, in units of their scatter: chi squared.
     misfit = float((fit.left(each, fit.logarithms) ** 2).sum()) if each.ring else 0.0
     off = float(np.exp(fit.calibration(each, fit.logarithms))) - 1
@@ -303,7 +321,9 @@ def remarks(fit: Fit, each: Set, model: Array) -> list[str]:
     opens = model > OPENS * preload
     told = {
         f"neighbouring residuals are alike (correlation {together:.2f}): model or measurement is off by more than "
-        "scatter, and the intervals are too narrow": together > REGULAR / np.sqrt(len(left)),
+        "scatter, and the intervals are too narrow": alike < CONTRADICT,
+        f"its row {order[worst] + 1} is {abs(left[worst]):.1f} times the scatter from the model: is it right?":
+            alone < CONTRADICT,
         "frequency or rate of decay do not agree with the other data, or with parameters that are not sought: the "
         "intervals are too narrow": np.exp(-misfit / 2) < CONTRADICT,
         "without a line `# calibration = …` its instrument is taken as exact; the intervals tell the scatter alone":
