@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import tomlkit
 from matplotlib.figure import Figure
+from scipy.optimize import brentq
 from scipy.stats import binom, t
 
 import measured
@@ -549,6 +550,62 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
     paths[0].write_text(paths[0].read_text().split("\n", 1)[1])
     with pytest.raises(RelayContactError, match=r"0.csv:1: which position of the coil"):
         found(*paths, relay=file)
+
+
+STRIP: Values = {
+    "beam.length": 18e-3, "beam.width": 5e-3, "beam.thickness": 0.22e-3, "beam.youngsModulus": 1.1e11,
+    "contact.curvatureRadius": 4e-3,
+}  # fmt: skip
+HERTZ = 4 / 3 / ((1 - 0.33**2) / 86e9 + (1 - 0.34**2) / 81.92e9) * 4e-3**0.5
+
+
+def pressed_strip(over: Array, force: Callable[[float, float, float], float], folder: Path) -> Path:
+    """Write the relay of STRIP, and a static force over travel: where `force`, by compliance and travel, vanishes."""
+    compliance = 18e-3**3 / (3 * 1.15e11 * 5e-3 * 0.22e-3**3 / 12)
+    rows = [(each, brentq(force, 1e-9, 100.0, args=(compliance, each), xtol=1e-15)) for each in over]
+    write_table(folder / "force.csv", "# position = on\ntravel,force", np.array(rows), digits=12)
+    text = "\n".join(f"parameters.{name} = {value!r}" for name, value in STRIP.items())
+    (folder / "relay.toml").write_text(f"{text}\n[[position]]\nname = 'on'\n[[position]]\nname = 'off'\n")
+    return folder / "force.csv"
+
+
+def test_a_gauge_at_the_fixed_contact_shows_the_force_of_both_twin_contacts(tmp_path: Path) -> None:
+    def vanishes(force: float, compliance: float, over: float) -> float:
+        return float(4e-4 + over - force * compliance - (force / 2 / HERTZ) ** (2 / 3))
+
+    data, relay = pressed_strip(np.linspace(-2e-4, 2e-4, 6), vanishes, tmp_path), tmp_path / "relay.toml"
+    twins = ("effects.parallelContact = true", "parallel.curvatureRadius = 4e-3", "contact.overtravel = 4e-4")
+    relay.write_text("".join(f"parameters.{each}\n" for each in twins) + relay.read_text())
+    result = found(data, relay=relay, parameters=["beam.youngsModulus"])
+    assert result["beam.youngsModulus"].value == pytest.approx(1.15e11, rel=1e-6)
+
+
+def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel(tmp_path: Path) -> None:
+    part, pushed, stiffness = 12 / 18, 0.92e-3, 2e5
+
+    def vanishes(force: float, compliance: float, over: float) -> float:
+        across, own = part**2 * (3 - part) / 2 * compliance, part**3 * compliance
+        pusher = (pushed + across * force) / (1 / stiffness + own)
+        return float(-1.4e-3 + over - (compliance * force - across * pusher) - (force / HERTZ) ** (2 / 3))
+
+    data = pressed_strip(np.linspace(-1e-4, 2e-4, 6), vanishes, tmp_path)
+    relay, ring = tmp_path / "relay.toml", tmp_path / "ring.csv"
+    text = f"parameters.contact.overtravel = -1.45e-3\n{relay.read_text()}"
+    for name, place in (("on", pushed), ("off", -4e-3)):
+        text = text.replace(f"'{name}'\n", f"'{name}'\nparameters.pusher.displacement = {place}\n")
+    relay.write_text(f"{text}[pusher]\nposition = 12e-3\nstiffness = {stiffness}\n")
+    result = found(data, relay=relay, parameters=["contact.overtravel", "beam.youngsModulus"])
+    assert result["contact.overtravel"].value == pytest.approx(-1.4e-3, rel=1e-6)
+    assert result["beam.youngsModulus"].value == pytest.approx(1.15e11, rel=1e-6)
+    low, high = result["contact.overtravel"].interval
+    assert low <= result["contact.overtravel"].value <= high
+    # A pusher that touches the lifted spring changes what rings.
+    write_table(ring, "time,displacement", np.column_stack([np.arange(20), np.sin(np.arange(20))]))
+    with pytest.raises(RelayContactError, match=r"ring.csv:1: which position of the coil"):
+        found(ring, relay=relay)
+    write_table(ring, "# position = on\novertravel,frequency", np.column_stack([np.full(5, 1e-4), np.full(5, 1e3)]))
+    with pytest.raises(RelayContactError, match="in the position on a pusher closes the contact: not allowed"):
+        found(ring, relay=relay, parameters=["beam.youngsModulus"])
 
 
 @pytest.mark.parametrize(

@@ -47,7 +47,8 @@ def identify(
         springs = [Path(str(values["beam.file"])) for values in described.positions.values() if "beam.file" in values]
         made = (f"{path.stem}.toml", *(each.name for each in springs), *FILES)
         spare((Path(out) / name for name in made), (path, *springs, *paths))
-    measurements = [read(each, component, list(described.positions)) for each in paths]
+    pushed = any(values.get("effects.pusher", "None") != "None" for values in described.positions.values())
+    measurements = [read(each, component, list(described.positions), pushed) for each in paths]
     if not measurements:
         raise RelayContactError("no data: one file or more is needed")
     names = parameters or usual(described, measurements)

@@ -83,8 +83,8 @@ class Measurement:
         return f"{self.kind}, {self.path.name}"
 
 
-def read(path: Path, component: Component, positions: list[str]) -> Measurement:
-    """Read a measurement of a relay with these positions of its coil."""
+def read(path: Path, component: Component, positions: list[str], pushed: bool = False) -> Measurement:
+    """Read a measurement of a relay with these positions of its coil; `pushed`: a pusher may touch its spring."""
     table = read_table(path, COLUMNS)
     kind, quantity = what(table)
     over = KINDS[kind][0]
@@ -103,7 +103,7 @@ def read(path: Path, component: Component, positions: list[str]) -> Measurement:
     told = interpreted(table, component, positions)
     is_open = told.pop("contact", "closed" if quantity in ("force", "level", "frequency") else "open") == "open"
     position, calibration = str(told.pop("position", positions[0])), float(told.pop("calibration", 0.0))
-    if len(positions) > 1 and not is_open and "position" not in table.settings:
+    if len(positions) > 1 and (pushed or not is_open) and "position" not in table.settings:
         raise table.wrong(f"which position of the coil? A line before says so: # position = {' or '.join(positions)}")
     acceleration = table["acceleration"] if "acceleration" in over else np.array([])
     return Measurement(

@@ -26,7 +26,7 @@ STATIC: Values = {
     "beam.massDamping": 0.0, "beam.stiffnessDamping": 0.0, "contact.damping": 0.0, "solver.modes": 1,
 }  # fmt: skip
 """What a static force does not depend on is the same, so that it is not computed again."""
-OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity", "force": "contact.force"}
+OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity"}
 KNOCK_OPEN, KNOCK_CLOSED, WEAK = 1e-2, 1e-4, 1e-6
 """How far a knock, and a steady vibration of a closed contact, would move the tip if it were free, as parts of its
 distance from the contact, or of the overtravel: poles and amplitudes are those of the linear contact to 1e-5."""
@@ -42,6 +42,11 @@ TOUCHING: Values = {"contact.overtravel": -1e-6, "solver.tolerance": 1e-8}
 """Just before the contact closes; instants of openings are then located well within the steps of derivatives."""
 WATCHED, NOTHING = 5e-6, 1e-9  # s: less than a blow of the contact lasts; a bounce where there is none
 KEPT = 256  # predictions
+
+
+def forces(values: Values) -> list[str]:
+    """Return the outputs whose sum a gauge at the fixed contact shows: twin contacts press it together."""
+    return ["contact.force", *(["parallel.force"] if values.get("effects.parallelContact") else [])]
 
 
 @dataclass
@@ -66,8 +71,12 @@ class Laboratory:
         elif kind != BOUNCE:
             own = {**own, "solver.modes": MODES}
         found = {**values, **ALONE, **own, **measurement.settings}
-        if kind in (RINGDOWN, RESPONSE, CHATTER) and not measurement.is_open and self.overtravel(found) <= 0:
-            overtravel = self.overtravel(found)
+        overtravel = self.overtravel(found)
+        if overtravel <= 0 and kind == FREQUENCY:
+            text = f"in the position {measurement.position} a pusher closes the contact: not allowed, allowed is one"
+            raise RelayContactError(f"{measurement.path}: {kind}: {text} that the overtravel closes")
+        closed = kind in (RINGDOWN, RESPONSE, CHATTER) and not measurement.is_open
+        if closed and overtravel <= 0 and self.rest("preload.force", found) <= 0:
             what = f"{measurement.kind}: in the position {measurement.position} the contact is open"
             allowed = "allowed is a closed one, or the line `# contact = open` before the columns"
             text = f"{what} (contact.overtravel = {overtravel:g} m): not allowed, {allowed}"
@@ -95,8 +104,9 @@ class Laboratory:
         return self.component.value(values, "contact.overtravel")
 
     def force(self, measurement: Measurement, values: Values) -> Array:
-        """Return the static contact force (N) over travel from the working position."""
-        return self.at_rest("preload.force", self.overtravel(values) + measurement.over, values)
+        """Return the static force (N) on the fixed contact over travel from the working position."""
+        over = self.overtravel(values) + measurement.over
+        return np.sum([self.at_rest(name, over, values) for name in forces(values)], axis=0)
 
     def frequency(self, measurement: Measurement, values: Values) -> Array:
         """Return the lowest natural frequency (Hz) of the closed contact over the overtravel."""
@@ -142,23 +152,24 @@ class Laboratory:
         self.contact.begin_anew(values)
         return self.contact.real(name)[0]
 
-    def gains(self, name: str, frequencies: Array, values: Values) -> Array:
-        """Return the amplitudes of an output per base acceleration."""
+    def gains(self, names: list[str], frequencies: Array, values: Values) -> Array:
+        """Return the amplitudes of the sum of outputs per base acceleration."""
         values = {**values, "solver.tolerance": EXACT}
         amplitude = WEAK * abs(self.overtravel(values)) * (2 * np.pi * self.rest("preload.frequency", values)) ** 2
         found = []
         for frequency in map(float, frequencies):
             self.contact.begin_anew({**values, **sine(frequency, amplitude)})
-            found.append(self.steady(name, frequency) / amplitude)
+            found.append(self.steady(names, frequency) / amplitude)
         return np.array(found)
 
-    def steady(self, name: str, frequency: float) -> float:
-        """Return the amplitude of an output once the start is forgotten."""
+    def steady(self, names: list[str], frequency: float) -> float:
+        """Return the amplitude of the sum of outputs once the start is forgotten."""
         quarter = 0.25 / frequency
         time, periods, calm, before = 0.0, PERIODS, 0, 0j
         while True:
             instants = np.append(time, periods / frequency + quarter * np.arange(3))
-            first, second, third = self.contact.drive(instants, {}, [name])[name].tolist()
+            found = self.contact.drive(instants, {}, names)
+            first, second, third = np.sum([found[name] for name in names], axis=0).tolist()
             time = instants[-1]
             amplitude = complex((first - third) / 2, second - (first + third) / 2)
             calm = calm + 1 if abs(amplitude - before) <= SETTLED * abs(amplitude) else 0
@@ -168,11 +179,13 @@ class Laboratory:
 
     def amplitude(self, measurement: Measurement, values: Values) -> Array:
         """Return the amplitudes of a frequency response."""
-        return self.gains(OUTPUTS[measurement.quantity], measurement.over, values) * measurement.acceleration
+        own = measurement.quantity
+        names = forces(values) if own == "force" else [OUTPUTS[own]]
+        return self.gains(names, measurement.over, values) * measurement.acceleration
 
     def level(self, measurement: Measurement, values: Values) -> Array:
         """Return the accelerations (m/s2) from which on the contact is interrupted, as far as it is linear."""
-        gains = self.gains("contact.force", measurement.over, values)
+        gains = self.gains(["contact.force"], measurement.over, values)
         monitor = self.monitor(values)
         reserve = self.rest("preload.force", values) - interrupting_force(self.contact, values, monitor.threshold)
         return max(reserve, 1e-9) / (gains * kept(measurement.over, monitor.opening))

@@ -50,7 +50,8 @@ class Found:
     @property
     def interval(self) -> tuple[float, float]:
         """Return the ends of the 95 % interval; it is symmetrical in the logarithm."""
-        return self.value * float(np.exp(-self.half)), self.value * float(np.exp(self.half))
+        low, high = sorted((self.value * float(np.exp(-self.half)), self.value * float(np.exp(self.half))))
+        return low, high
 
 
 @dataclass(frozen=True)
@@ -127,11 +128,14 @@ def unknowns(
                 variable = component.variables[name]
                 start = component.value(values, name)
                 least, most = float(variable.min or 0.0), float(variable.max or np.inf)
-            if start <= 0:
-                raise RelayContactError(f"{name} = {start:g} in the relay's file: not allowed, a search starts above 0")
+            if start == 0:
+                raise RelayContactError(
+                    f"{name} = 0 in the relay's file: not allowed, a search keeps the sign of its start"
+                )
             # So far within what is allowed that derivatives are too.
-            low = max(-REACH, np.log(least / start) + STEP if least > 0 else -REACH)
-            high = min(REACH, float(np.log(most / start)) - STEP)
+            least, most = sorted((least / start, most / start))
+            low = max(-REACH, np.log(least) + STEP if least > 0 else -REACH)
+            high = min(REACH, float(np.log(most)) - STEP)
             label = f"{name}, {group[0]}" if len(groups) > 1 else name
             found.append(Unknown(name, group, start, label, low, high))
     return found
