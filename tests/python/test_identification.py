@@ -76,6 +76,7 @@ def test_what_a_laboratory_measures_gives_the_parameters(
         assert np.interp(over, *curve.T) == pytest.approx(values, abs=0.1 * np.abs(values).max())
     relay = Relay.read(tmp_path / "found/paper.toml", COMPONENT)
     assert set(relay.uncertainty) == set(measured.TRUTH)
+    assert relay.title.endswith(", identified but for contact.damping")
     # Its covariance, which `qualify` draws from.
     assert list(relay.correlation.names) == list(relay.uncertainty)
     assert np.abs(np.tril(relay.correlation.matrix, -1)).max() > 0.3
@@ -145,6 +146,7 @@ def test_a_static_force_tells_the_law_of_a_soft_contact(tmp_path: Path) -> None:
     data = Measurement(Path("force.csv"), "static force", over, "force", "N", force)
     result = asked(tmp_path, [data], *true, guessed={**measured.ROUGH_GUESSED, "contact.overtravel": 2e-4})
     assert all(holds(result, name, value) for name, value in true.items())
+    assert any("contact.stiffness is 0.05" in note for note in result.notes)
 
 
 RECORDS = ((0.01, 2e3, 0.05), (0.25, 1e4, 0.01), (1.0, 5e4, 0.001))
@@ -203,9 +205,13 @@ def test_a_search_stays_within_what_is_allowed(tmp_path: Path) -> None:
     for start in (0.5, 0.9):
         data, relay = rough_files(tmp_path, steep)
         relay.write_text(relay.read_text().replace("stiffnessExponent = 0.5", f"stiffnessExponent = {start}"))
-        result = found(data, relay=relay, parameters=["contact.stiffness", "contact.stiffnessExponent"])
+        names, out = ["contact.stiffness", "contact.stiffnessExponent"], tmp_path / "found"
+        result = found(data, relay=relay, parameters=names, out=out)
         # The search ends a thousandth before the end.
         assert result["contact.stiffnessExponent"].value == pytest.approx(0.9, rel=2e-3)
+        # No value that `qualify` draws is beyond that end.
+        exponent = Relay.read(out / "relay.toml", COMPONENT).uncertainty["contact.stiffnessExponent"]
+        assert float(exponent.factor(np.array([4.0]), 0.9)[0]) * result["contact.stiffnessExponent"].value <= 0.9
 
 
 def test_one_overtravel_does_not_tell_the_exponent(tmp_path: Path) -> None:
@@ -325,6 +331,11 @@ def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     beyond = np.append(-4e-4, force.over), np.append(0.0, force.values)
     for data, sought, told in (
         ([replace(force, over=over, values=line + drift)], [stiffness], "neighbouring residuals are alike"),
+        (
+            [replace(force, over=over[::10], values=(line + drift)[::10])],
+            [stiffness],
+            "neighbouring residuals are alike",
+        ),
         (gauges, [stiffness], r"the instrument would have to show [+-]\S+ %, more than its 0.5 %"),
         ([ring, replace(ring, over=1.01 * ring.over)], [stiffness, damping], "frequency or rate of decay do not agree"),
         ([replace(force, calibration=0.0)], [stiffness], "its instrument is taken as exact"),

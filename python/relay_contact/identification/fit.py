@@ -260,9 +260,12 @@ class Fit:
     @property
     def covariance(self) -> Array:
         """Covariance of the logarithms; where the data tell nothing it is very large, not infinite."""
-        sizes = np.maximum(np.linalg.norm(self.jacobian, axis=0), TINY)
+        # That parameters are held tells nothing.
+        end = self.slices()[-1].stop
+        told = np.delete(self.jacobian, slice(end, end + len(self.unknowns)), axis=0)
+        sizes = np.maximum(np.linalg.norm(told, axis=0), TINY)
         # As many rows as unknowns at least: with fewer, directions that the data tell nothing of would be left out.
-        rows = np.vstack([self.jacobian / sizes, np.zeros((len(sizes), len(sizes)))])
+        rows = np.vstack([told / sizes, np.zeros((len(sizes), len(sizes)))])
         _, singular, directions = np.linalg.svd(rows, full_matrices=False)
         scaled = directions / np.maximum(singular, TINY)[:, None]
         return np.asarray(scaled.T @ scaled / np.outer(sizes, sizes))

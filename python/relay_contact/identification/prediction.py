@@ -106,7 +106,7 @@ class Laboratory:
     def force(self, measurement: Measurement, values: Values) -> Array:
         """Return the static force (N) on the fixed contact over travel from the working position."""
         over = self.overtravel(values) + measurement.over
-        return np.sum([self.at_rest(name, over, values) for name in forces(values)], axis=0)
+        return np.asarray(np.sum([self.at_rest(name, over, values) for name in forces(values)], axis=0))
 
     def frequency(self, measurement: Measurement, values: Values) -> Array:
         """Return the lowest natural frequency (Hz) of the closed contact over the overtravel."""

@@ -11,7 +11,7 @@ from tomlkit.container import OutOfOrderTableProxy
 from tomlkit.items import InlineTable
 
 from relay_contact.files import write_at_once
-from relay_contact.identification.result import Identification, has
+from relay_contact.identification.result import Found, Identification, has
 from relay_contact.schema import leaves
 from relay_contact.spring import PREFIX, SPRING_FILES, text_of
 
@@ -20,6 +20,18 @@ def number(value: float, half: float) -> Any:  # noqa: ANN401
     """Give a value for a file, with two digits more than its interval."""
     text = f"{value:.{min(12, max(3, 2 - math.floor(math.log10(max(half, 1e-12)))))}g}"
     return tomlkit.value(text if set(text) & set(".e") else f"{text}.0")
+
+
+def uncertainty(found: Found) -> Any:  # noqa: ANN401
+    """Give the distribution of a parameter: a normal one, or a triangle where that goes beyond what is allowed."""
+    room = found.unknown.start * math.exp(found.unknown.high) / found.value - 1
+    # Four standard deviations; a triangle has the same standard deviation with 1.25 times the half of 95 %.
+    if 2 * found.half < room:
+        return number(found.half, 0.1)
+    low, high = -min(1.25 * found.half, 0.99), max(0.0, min(1.25 * found.half, room))
+    table = tomlkit.inline_table()
+    table.update({"distribution": "triangular", "low": low, "mode": 0.0, "high": high})
+    return table
 
 
 def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: ANN401
@@ -52,11 +64,13 @@ def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: AN
 
 def text(result: Identification, spring: str, folder: Path) -> str:
     """Give the text of the relay's file in a folder; `spring` is the name of the spring file there, if it has one."""
-    content: Any = tomlkit.parse(result.path.read_text(encoding="utf-8-sig"))
+    content: Any = tomlkit.parse(result.path.read_text(encoding="utf-8-sig") + "\n")
     for name in ("parameters", "uncertainty"):
         if name not in content:
             content.append(name, tomlkit.table())
-    content["title"] = f"{result.relay.title}, identified"
+    # For the page of `qualify`, which would take these as known.
+    exact = [label for label in result.missing if label.split(",")[0] not in result.relay.uncertainty]
+    content["title"] = f"{result.relay.title}, identified{' but for ' if exact else ''}{', '.join(exact)}"
     tables = dict(zip(result.relay.positions, content.get("position", [{}]), strict=True))
     for each in result.found:
         name = each.unknown.name
@@ -65,8 +79,8 @@ def text(result: Identification, spring: str, folder: Path) -> str:
             own = [tables[place] for place in each.unknown.positions if has(tables[place], name)]
             for table in [place["parameters"] for place in own] or [content["parameters"]]:
                 put(table, name, number(each.value, each.half), remark)
-        widest = max(other.half for other in result.found if other.unknown.name == name)
-        put(content["uncertainty"], name, number(widest, 0.1), "identified")
+        widest = max((other for other in result.found if other.unknown.name == name), key=lambda other: other.half)
+        put(content["uncertainty"], name, uncertainty(widest), "identified")
     names, matrix = correlations(result)
     content["correlation"] = tomlkit.table()
     content["correlation"]["names"] = names

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtr
+from scipy.special import fdtrc, stdtr
 
 from relay_contact.component import Array, Component, nearest
 from relay_contact.files import RelayContactError, read_toml
@@ -22,6 +22,7 @@ REACH = float(np.log(300.0))
 WIDE = float(np.log(2.0))
 """Half of a 95 % interval of a logarithm from which on a parameter is not determined: it may be twice as large."""
 TOGETHER = 0.95  # correlation from which on it is said
+FAR = float(np.log(5.0))  # from the relay's file, from which on it is said
 DRAWN = 60  # values of a fitted curve
 CONTRADICT = 1e-3
 """Chance below which it is said that residuals are alike or one of them far from the others, or that frequency and rate
@@ -261,7 +262,7 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         found.append(Found(unknown, value, float(sizes[number]), own))
     fitted = [fit.modelled(each, fit.logarithms) for each in fit.sets]
     curves = [curve(fit, each, model) for each, model in zip(fit.sets, fitted, strict=True)]
-    notes = [line for each in zip(fit.sets, fit.slices(), fitted, strict=True) for line in remarks(fit, *each)]
+    notes = [line for each, model in zip(fit.sets, fitted, strict=True) for line in remarks(fit, each, model)]
     notes += [
         f"{one.label} and {other.label} are known better together than alone (correlation {correlation[i, j]:+.3f})"
         for i, one in enumerate(fit.unknowns) for j, other in enumerate(fit.unknowns[:i])
@@ -271,6 +272,11 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         f"{each.unknown.label} is known to ± {100 * each.half:.3g} %, by what others leave open: `qualify` takes less "
         "than 100 %"
         for each in found if each.half >= 1
+    ]  # fmt: skip
+    notes += [
+        f"{each.unknown.label} is {each.value / each.unknown.start:.3g} times its value in the relay's file: is the "
+        "file that of this relay, and its model complete?"
+        for each in found if abs(np.log(each.value / each.unknown.start)) > FAR
     ]  # fmt: skip
     for model in relay.models:
         # What `qualify` takes in place of what was found.
@@ -299,19 +305,18 @@ def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:
     return over, fit.modelled(replace(each, measurement=denser, factor=factor), fit.logarithms)
 
 
-def remarks(fit: Fit, each: Set, rows: slice, model: Array) -> list[str]:
+def remarks(fit: Fit, each: Set, model: Array) -> list[str]:
     """Tell where a measurement does not agree with the model."""
     own = each.measurement
     order = np.argsort(own.over, kind="stable")
     left = each.differences(model)[order] / each.sigma
-    # Chances of more if it were random: of the correlation of neighbours (R. B. Leipnik, Biometrika 34 (1947) 80-87),
-    # less what the fit makes of it, and of the largest of all (W. R. Thompson, Ann. Math. Stat. 6 (1935) 214-219).
-    number, worst = len(left), int(np.abs(left).argmax())
-    together = float((left[1:] * left[:-1]).sum() / max((left**2).sum(), 1e-300))
-    if not each.ring and len(fit.jacobian):
-        slopes = fit.jacobian[rows][order]
-        together += float(np.einsum("ij,jk,ik->", slopes[1:], fit.covariance, slopes[:-1])) / each.freedom
-    alike = stdtr(number + 1, -together * np.sqrt((number + 1) / (1 - min(together**2, 0.999999))))
+    # Chances of more if it were random: of a trend up to the square; of the correlation of neighbours (R. B. Leipnik,
+    # Biometrika 34 (1947) 80-87); of the largest of all (W. R. Thompson, Ann. Math. Stat. 6 (1935) 214-219).
+    number, worst, squares = len(left), int(np.abs(left).argmax()), max(float((left**2).sum()), 1e-300)
+    seen = float(((left @ np.linalg.qr(np.vander(np.arange(number), 3))[0]) ** 2).sum()) / squares
+    trend = fdtrc(3, number - 3, seen / max(1 - seen, 1e-12) * (number - 3) / 3)
+    together = float((left[1:] * left[:-1]).sum()) / squares
+    alike = min(trend, stdtr(number + 1, -together * np.sqrt((number + 1) / (1 - together**2))))
     free = max(each.freedom, 1.001)
     part = min(float(left[worst] ** 2 / free), 0.999999)
     alone = 2 * number * stdtr(free - 1, -np.sqrt((free - 1) * part / (1 - part)))
@@ -324,8 +329,8 @@ def remarks(fit: Fit, each: Set, rows: slice, model: Array) -> list[str]:
         preload = fit.laboratory.rest("preload.force", conditions)
     opens = model > OPENS * preload
     told = {
-        f"neighbouring residuals are alike (correlation {together:.2f}): model or measurement is off by more than "
-        "scatter, and the intervals are too narrow": alike < CONTRADICT,
+        f"neighbouring residuals are alike (correlation {together:.2f}, trend {100 * seen:.0f} %): model or "
+        "measurement is off by more than scatter, and the intervals are too narrow": alike < CONTRADICT,
         f"its row {order[worst] + 1} is {abs(left[worst]):.1f} times the scatter from the model: is it right?":
             alone < CONTRADICT,
         "frequency or rate of decay do not agree with the other data, or with parameters that are not sought: the "
