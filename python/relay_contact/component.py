@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from copy import copy
 from ctypes import c_int, c_size_t, c_void_p
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
@@ -37,7 +37,6 @@ KEPT: ContextVar[dict[str, str] | None] = ContextVar("warnings", default=None)
 SETTABLE = ("parameter", "input")
 LARGEST_REAL = sys.float_info.max
 FOLLOW = "relayContactFollow"
-"""Function of the library, beside those of FMI, that does many communication steps."""
 
 Given = TypeVar("Given")
 
@@ -112,6 +111,13 @@ class FMU2Functions(fmi2.FMU2Slave):  # type: ignore[misc]
     Each instance has a copy.
     """
 
+    @cached_property
+    def follow(self) -> Any:  # noqa: ANN401
+        """The function of the library, beside those of FMI, that does many communication steps."""
+        follow, some = self.dll[FOLLOW], (c_void_p, c_size_t)
+        follow.argtypes, follow.restype = (c_void_p, *some, *some, c_void_p, *some, c_void_p), c_int
+        return follow
+
     def freeInstance(self) -> None:  # noqa: N802
         """Free the instance, not the library, which others have in common."""
         self.fmi2FreeInstance(self.component)
@@ -129,7 +135,9 @@ class Component:
             there = ", ".join(supported_platforms(str(self.path)))
             raise RelayContactError(f"{self.path} has libraries for {there} only, not for this machine ({platform})")
         self.description = read_model_description(str(self.path))
-        self.variables = {variable.name: variable for variable in self.description.modelVariables}
+        self.variables = known = {variable.name: variable for variable in self.description.modelVariables}
+        self.choices = cache(lambda name: {str(each.name): int(each.value) for each in known[name].declaredType.items})
+        """The numbers of the choices of a variable, by name."""
         if folder is None:
             folder = Path(mkdtemp())
             weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
@@ -195,10 +203,6 @@ class Component:
         """Return the same with entries of spring files, which look for their file and its modulus by name."""
         entries = {name: value for name, value in values.items() if is_entry(name)}
         return self.settables({name: value for name, value in values.items() if name not in entries}) | entries
-
-    def choices(self, name: str) -> dict[str, int]:
-        """Give the numbers of the choices of a variable, by name."""
-        return {item.name: int(item.value) for item in self.variables[name].declaredType.items}
 
     def number(self, name: str, value: Value) -> float:
         """Return the number that stands for a value of a variable; a value of another type is refused."""
@@ -437,12 +441,9 @@ class Contact:
             raise RelayContactError(f"{', '.join(courses)}: not allowed, allowed is each input once")
         rows = np.zeros((max(0, len(times) - 1), len(watched)))
         try:
-            # A new object, with types of its own, as other threads have theirs.
-            follow = self.fmu.dll[FOLLOW]
+            follow = self.fmu.follow
         except AttributeError as error:
             raise RelayContactError(f"{self.component.path} is older than this package: it has no {FOLLOW}") from error
-        some = c_void_p, c_size_t
-        follow.argtypes, follow.restype = (c_void_p, *some, *some, c_void_p, *some, c_void_p), c_int
         status = follow(
             self.fmu.component, times.ctypes.data, len(times), inputs.ctypes.data, len(inputs), given.ctypes.data,
             outputs.ctypes.data, len(outputs), rows.ctypes.data,
@@ -450,16 +451,24 @@ class Contact:
         if status > fmi2.fmi2Warning:
             raise FMICallException(function=FOLLOW, status=status)
         self.tell()
-        taken = np.count_nonzero(np.diff(times))
+        taken = np.count_nonzero(times[1:] != times[:-1])
         return {name: rows[:taken, column] for column, name in enumerate(watched)}
 
     def get(self, name: str) -> float:
         """Give the value of any variable that is no text, of an enumeration its number."""
-        kind = self.component.variables[self.component.name(name)].type
-        if kind == "String":
-            raise RelayContactError(f"{name}: a text, which is no output")
-        read = getattr(self.fmu, f"get{'Integer' if kind == 'Enumeration' else kind}")
-        return float(read(self.references(name))[0])
+        return self.every(name)[name]
+
+    def every(self, *names: str) -> dict[str, float]:
+        """Give such values of several variables by the names given, those of a type in one call."""
+        variables = {name: self.component.variables[self.component.name(name)] for name in names}
+        found = dict.fromkeys(names, 0.0)
+        for kind in {variable.type for variable in variables.values()}:
+            own = {name: each.valueReference for name, each in variables.items() if each.type == kind}
+            if kind == "String":
+                raise RelayContactError(f"{', '.join(own)}: a text, which is no output")
+            read = getattr(self.fmu, f"get{'Integer' if kind == 'Enumeration' else kind}")
+            found |= zip(own, map(float, read([*own.values()])), strict=True)
+        return found
 
     def real(self, *names: str) -> list[float]:
         """Give the values of several real variables."""

@@ -130,8 +130,8 @@ def run_many(
             with scene.started(component, points) as (contact, inputs):
                 contact.drive(points, inputs)
                 ends = {name: float(course[-1]) for name, course in inputs.items()}
-                for name in names or map(component.name, scene.outputs):
-                    found[name] = ends[name] if name in ends else contact.get(name)
+                found = contact.every(*(names or map(component.name, scene.outputs)))
+                found |= {name: ends[name] for name in found.keys() & ends.keys()}
                 told["warning"] = " ".join(contact.warnings)
         except (RelayContactError, OSError) as error:
             told["error"] = str(error)

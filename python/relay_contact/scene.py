@@ -182,8 +182,7 @@ class Scene:
 
     def idle(self, component: Component) -> list[str]:
         """Return in words which values are not used, as nothing says whether the scene has what uses them."""
-        values = component.named(self.values)
-        told = []
+        values, told = self.values, []
         for name in values.keys() & component.variables.keys():
             needed = lacking(component, name, [values]) if values[name] != component.start(name) else ""
             if needed and needed.partition(" ")[0] not in values:

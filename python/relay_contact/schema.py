@@ -5,6 +5,7 @@ import tomllib
 from bisect import bisect_left
 from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
@@ -32,6 +33,7 @@ SWITCHES = {
     "excitation.": ("effects.excitation", "Sine", "LogSweep", "HalfSine", "Random"),
 }  # fmt: skip
 """By the beginning of the names of parameters and inputs, the longest last: what they are not used without."""
+SWITCHED = cache(lambda name: next((on for own, on in reversed(SWITCHES.items()) if name.startswith(own)), (name,)))
 Place = tuple[str | int, ...]
 """Keys and indices from the top of a file to an entry."""
 Model = TypeVar("Model")
@@ -179,7 +181,7 @@ def variables(
 
 def lacking(component: Component, name: str, known: list[Values]) -> str:
     """Return what a parameter is not used without, if all of some sets of parameters lack it."""
-    switch, *on = next((own for start, own in reversed(SWITCHES.items()) if name.startswith(start)), (name,))
+    switch, *on = SWITCHED(name)
     if switch == name:
         return ""
     if any(component.choice(values, switch) in on if on else values.get(switch) for values in known):
