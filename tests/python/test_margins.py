@@ -585,6 +585,15 @@ def test_sines_that_differ_in_level_alone_are_sought_once() -> None:
     assert both.specimen.found.keys() == alone.specimen.found.keys()
 
 
+def test_pulses_that_differ_in_level_alone_are_sought_once() -> None:
+    louder = replace(SHOCK, name="louder", acceleration=1.5 * SHOCK.acceleration)
+    both, alone = placed(described(ROUGH), SHOCK, louder), placed(described(ROUGH), SHOCK)
+    margin, lower = (judgement.transient_level(both, test)[0].factor for test in (SHOCK, louder))
+    assert margin == pytest.approx(1.5 * lower, rel=1e-9)
+    judgement.transient_level(alone, SHOCK)
+    assert 0 < len(both.specimen.found) == len(alone.specimen.found)
+
+
 @pytest.mark.parametrize(("gap", "told"), [(1e-4, True), (1e-3, False)])
 def test_a_fixed_contact_that_follows_the_spring_to_the_open_one_is_told(gap: float, told: bool) -> None:
     blade = str(ROOT / "scenes/springs/reed-blade.toml")

@@ -1,7 +1,7 @@
 """Courses over time as the component runs them: pulses, records and noise, whole or around their largest dips."""
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from threading import Lock
 from typing import Any
 
@@ -18,6 +18,7 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     Shock,
     Transient,
     overall,
+    rounded,
     straight,
 )
 from relay_contact.qualification.level import Lengths, Tried, threshold
@@ -85,9 +86,13 @@ class Piece:
 
     def tried(self, specimen: Specimen, sign: float) -> Tried:
         """Return what tells what of the part fails, by factors of its level, with a sign."""
+        # Pulses that differ in level alone search the same.
+        shape = tuple(self.course.generator.values()) or self.course
+        peak = float(np.abs(self.course.acceleration).max())
 
         def tried(factor: float) -> tuple[Lengths, float]:
-            lengths, _, ahead = self.follow(specimen, sign * factor)
+            level = sign * factor
+            lengths, ahead = specimen.once((shape, rounded(level * peak)), lambda: self.follow(specimen, level)[::2])
             return specimen.own(lengths), ahead
 
         return tried
@@ -162,7 +167,7 @@ def further(specimen: Specimen, test: Transient, level: float, linear: float) ->
     return sorted(found, key=lambda each: each[1].guess)[:MOST_DIPS]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Noise(Course):
     """A record of random acceleration, which might be repeated."""
 
@@ -225,15 +230,13 @@ def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str],
 
     That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
     """
-    # A search begins with the level that was just tried.
-    trials = {piece.begin: cache(piece.tried(specimen, 1.0)) for piece in dips}
 
     def sought(piece: Piece, part: float) -> tuple[float, list[str], Piece]:
-        level, failed = threshold(trials[piece.begin], piece.guess * part)
+        level, failed = piece.threshold(specimen, 1.0, guess=piece.guess * part)
         return level / piece.guess, failed, piece
 
     def fails(piece: Piece, part: float) -> bool:
-        return bool(trials[piece.begin](piece.guess * part)[0])
+        return bool(piece.tried(specimen, 1.0)(piece.guess * part)[0])
 
     one, other, third = dips
     first = sought(one, 1.0)

@@ -108,7 +108,7 @@ def straight(points: tuple[Breakpoint, ...], frequency: Array) -> Array:
     return np.where(inside, np.exp(lines), 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Course:
     """Base acceleration (m/s2) over time (s): straight lines between points, a time given twice is a jump.
 
