@@ -145,10 +145,8 @@ class Position:
     def pieces(self) -> dict[str, dict[str, list[courses.Piece]]]:
         """Of each course, by the test's name and its directions: as a whole, or what is around its largest dips."""
         return {
-            test.name: {
-                way: courses.pieces(self.specimen, test.course(), sign) for way, sign in test.directions.items()
-            }
-            for test in self.tests if isinstance(test, Transient)
+            test.name: {way: courses.pieces(self.specimen, course, sign) for way, sign in test.directions.items()}
+            for test, course in ((each, each.course()) for each in self.tests if isinstance(each, Transient))
         }  # fmt: skip
 
     @cached_property

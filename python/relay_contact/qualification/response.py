@@ -56,7 +56,7 @@ FREE: Values = {
 """Effects that a linear response is without."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Response:
     """Force (N) of a part that is held at rest, or gap (m) of an open contact, by base acceleration over frequency."""
 
@@ -172,6 +172,7 @@ class Response:
         size = fast(count)
         return np.asarray(irfft(rfft(course, size) * rfft(self.answer, size), size)[:count]) * STEP
 
+    @lru_cache(maxsize=2)  # noqa: B019
     def moved(self, course: Course) -> Array:
         """Return the change of force or gap by a course to its end, as nobody knows what follows; by 0 until calm."""
         sampled = course.sampled()
