@@ -204,6 +204,14 @@ class Position:
             found[name] = value * float(distribution.factor(score, unit)) if value else 0.0
         return found
 
+    def answered(self, scores: Array) -> tuple[Values, dict[str, Response]]:
+        """Return parameters and responses of a draw, found once."""
+        draw = tuple(scores)
+        if draw not in self.shared.tried:
+            values = self.drawn(scores)
+            self.shared.tried[draw] = {**self.values, **values}, self.responses(values)
+        return self.shared.tried[draw]
+
     @property
     def nominal(self) -> Values:
         """The uncertain parameters as the file says."""
@@ -219,8 +227,10 @@ class Position:
             known: dict[str, dict[str, statistics.Surface]] = {part: {} for part in nominal}
 
             def margins(row: Array) -> list[list[float]]:
-                drawn = self.drawn(row)
-                responses = self.responses(drawn) if drawn != own else nominal
+                responses = nominal if self.drawn(row) == own else self.answered(row)[1]
+                if np.count_nonzero(row) > 1:
+                    # Those at the end of a parameter alone are asked for again.
+                    self.shared.tried.pop(tuple(row), None)
                 each = [(one, responses[one.part]) for one in self.parts]
                 return [[at.reserve, *(one.linear(at, test) for test in self.tests)] for one, at in each]
 
@@ -301,14 +311,10 @@ class Position:
         linear = float(np.exp(surface.values[number]))
         if not LOWEST * (1 + STILL) < linear < MOST * (1 - STILL):
             return expected
-        draw = tuple(surface.scores[number])
-        if draw not in self.shared.tried:
-            values = self.drawn(surface.scores[number])
-            self.shared.tried[draw] = {**self.values, **values}, self.responses(values)
-        values, responses = self.shared.tried[draw]
+        values, responses = self.answered(surface.scores[number])
         response, lasting = responses[self.part], self.specimen.lasting
         own = replace(self.specimen, values=values, response=response)
-        specimen = self.specimens.setdefault(draw, own)
+        specimen = self.specimens.setdefault(tuple(surface.scores[number]), own)
         if isinstance(test, Sine):
             first, nominal = (each.weakest(test, lasting) for each in (response, self.specimen.response))
             weakest = self.weakest[test.name]
