@@ -130,9 +130,8 @@
 //!   damping that is before the surfaces part.
 //! - *Closing* ([`events::closing`]): on cubics through approach and velocity at the nodes, with bounds of all that they miss. A
 //!   grazing touch is not missed, as it is by a search for changes of sign.
-//! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What is missing there
-//!   would stay in the tangential spring as a wrong friction force; what fades in that spring in a part of the step is no polynomial
-//!   ([`collocation::slip`]).
+//! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What fades in the
+//!   tangential spring in a part of the step is no polynomial ([`collocation::slip`]).
 //! - *Gap* ([`events::gap`]): an armature that has left its core, which damps, is indented no longer, and the force of the magnet bends.
 //! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance. Between the
 //!   places where it turns the force polynomial is monotone, so that no dip is missed.

@@ -93,12 +93,14 @@ impl<'a, const S: usize> Locator<'a, S> {
         Some(Change { at: if at <= self.resolution { 0.0 } else { at }, phase, slope: slope / whole.length })
     }
 
-    /// The end of the trial at a change: on the polynomials, then on the exact motion under them, as what is missing there would
-    /// stay in the tangential spring.
+    /// The end of the trial at a change: on the polynomials; without a damper as it begins to slip then on the exact motion under them, as
+    /// what is missing there would stay in the tangential spring. With one what the polynomials miss would be made many times larger:
+    /// their forces answer to it at the nodes alone.
     pub(crate) fn cut_at_change(&mut self, change: &Change) -> Cut {
-        // Without a damper there is no such force for the slip velocity, nor a slope.
         let (mut at, mut event) = (change.at, Event::Slides(change.phase));
-        if change.at > 0.0 && change.slope > 0.0 {
+        let damped = self.rubbing().is_none_or(|rubbing| rubbing.law.damping > 0.0);
+        // Without one there is no such force for the slip velocity, nor a slope.
+        if change.at > 0.0 && change.slope > 0.0 && !damped {
             let beyond = |this: &Self, now: &Instant| this.beyond(now, change.phase);
             let (before, guess) = ((0.0, -f64::MIN_POSITIVE), (change.at, change.slope));
             let (latest, allowed) = (self.whole.length, self.whole.model.tolerance.step);
