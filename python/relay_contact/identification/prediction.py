@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import hankel
 
-from relay_contact.component import Array, Component, Contact, Values, half_sine, sine
+from relay_contact.component import Array, Component, Contact, Values, half_sine
 from relay_contact.files import RelayContactError
 from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
 from relay_contact.qualification.level import threshold
@@ -27,17 +27,16 @@ STATIC: Values = {
 }  # fmt: skip
 """What a static force does not depend on is the same, so that it is not computed again."""
 OUTPUTS = {"displacement": "tip.displacement", "velocity": "tip.velocity"}
-KNOCK_OPEN, KNOCK_CLOSED, WEAK = 1e-2, 1e-4, 1e-6
-"""How far a knock, and a steady vibration of a closed contact, would move the tip if it were free, as parts of its
-distance from the contact, or of the overtravel: poles and amplitudes are those of the linear contact to 1e-5."""
+KNOCK_OPEN, KNOCK_CLOSED, WEAK_OPEN, WEAK_CLOSED = 1e-2, 1e-4, 1e-4, 1e-6
+"""How far a knock would move the tip if it were free, for poles and for amplitudes, as parts of its distance from the
+contact, or of the overtravel: they are those of the linear contact to 1e-5, amplitudes of their largest."""
 SAMPLES, DENSITY, MODEL_ORDER = 64, 8, 24
 """Of a motion after a knock: points, points per period, and decaying exponentials at most; pole of the exact beam to
 1e-6 of its size (tests/python/test_identification.py)."""
 WITHIN = 1e-9
 """Singular values, as a part of the largest, that are rounding."""
-SETTLED, PERIODS, MOST = 1e-7, 64, 2**13
-"""Change of an amplitude between two times, of which the second is twice the first, twice in a row; periods before the
-first of them, and at most."""
+LINES = 128
+"""Steps per period of the highest frequency of a response."""
 TOUCHING: Values = {"contact.overtravel": -1e-6, "solver.tolerance": 1e-8}
 """Just before the contact closes; instants of openings are then located well within the steps of derivatives."""
 WATCHED, NOTHING = 5e-6, 1e-9  # s: less than a blow of the contact lasts; a bounce where there is none
@@ -47,6 +46,21 @@ KEPT = 256  # predictions
 def forces(values: Values) -> list[str]:
     """Return the outputs whose sum a gauge at the fixed contact shows: twin contacts press it together."""
     return ["contact.force", *(["parallel.force"] if values.get("effects.parallelContact") else [])]
+
+
+def exponentials(motion: Array) -> tuple[Array, Array]:
+    """Return the ratios from sample to sample of the exponentials of which a motion is a sum, and their courses.
+
+    They are the eigenvalues of the least system that moves so (J.-N. Juang, R. S. Pappa, J. Guid. Control Dyn. 8 (1985)
+    620-627).
+    """
+    half = SAMPLES // 2
+    table = hankel(motion[:half], motion[half - 1 :])
+    left, sizes, right = np.linalg.svd(table[:, :-1], full_matrices=False)
+    order = min(MODEL_ORDER, int((sizes > WITHIN * sizes[0]).sum()))
+    system = left[:, :order].T @ table[:, 1:] @ right[:order].T / sizes[:order]
+    ratios = np.linalg.eigvals(system).astype(complex)
+    return ratios, ratios ** np.arange(SAMPLES)[:, None]
 
 
 @dataclass
@@ -117,11 +131,7 @@ class Laboratory:
         return np.array([self.rest(name, {**values, "contact.overtravel": each}) for each in overtravel.tolist()])
 
     def ringing(self, measurement: Measurement, values: Values) -> Array:
-        """Return rate of decay (1/s) and angular frequency (rad/s, 0 if nothing rings) of what a knock makes ring most.
-
-        The motion after a knock is a sum of decaying exponentials; their poles are the eigenvalues of the least system
-        that has it (J.-N. Juang, R. S. Pappa, J. Guid. Control Dyn. 8 (1985) 620-627).
-        """
+        """Return decay (1/s) and angular frequency (rad/s, 0 if nothing rings) of what a knock makes ring most."""
         name, part = ("tip.displacement", KNOCK_OPEN) if measurement.is_open else ("contact.force", KNOCK_CLOSED)
         values = {**values, "solver.tolerance": EXACT}
         self.contact.begin_anew(values)
@@ -132,13 +142,7 @@ class Laboratory:
         step = 1 / frequency / DENSITY
         instants = 1 / frequency + step * np.arange(SAMPLES)
         motion = self.contact.drive(np.append(0.0, instants), {}, [name])[name] - rest
-        half = SAMPLES // 2
-        table = hankel(motion[:half], motion[half - 1 :])
-        left, sizes, right = np.linalg.svd(table[:, :-1], full_matrices=False)
-        order = min(MODEL_ORDER, int((sizes > WITHIN * sizes[0]).sum()))
-        system = left[:, :order].T @ table[:, 1:] @ right[:order].T / sizes[:order]
-        ratios = np.linalg.eigvals(system).astype(complex)
-        course = ratios ** np.arange(SAMPLES)[:, None]
+        ratios, course = exponentials(motion)
         parts = course * np.linalg.lstsq(course, motion, rcond=None)[0]
         energy = np.where(ratios.imag > 0, (np.abs(parts) ** 2).sum(axis=0), 0.0)
         if not energy.any():
@@ -152,40 +156,45 @@ class Laboratory:
         self.contact.begin_anew(values)
         return self.contact.real(name)[0]
 
-    def gains(self, names: list[str], frequencies: Array, values: Values) -> Array:
-        """Return the amplitudes of the sum of outputs per base acceleration."""
-        values = {**values, "solver.tolerance": EXACT}
-        amplitude = WEAK * abs(self.overtravel(values)) * (2 * np.pi * self.rest("preload.frequency", values)) ** 2
-        found = []
-        for frequency in map(float, frequencies):
-            self.contact.begin_anew({**values, **sine(frequency, amplitude)})
-            found.append(self.steady(names, frequency) / amplitude)
-        return np.array(found)
+    def gains(self, names: list[str], frequencies: Array, values: Values, part: float) -> Array:
+        """Return the amplitudes of the sum of outputs per base acceleration: after a knock, by Fourier transforms.
 
-    def steady(self, names: list[str], frequency: float) -> float:
-        """Return the amplitude of the sum of outputs once the start is forgotten."""
-        quarter = 0.25 / frequency
-        time, periods, calm, before = 0.0, PERIODS, 0, 0j
-        while True:
-            instants = np.append(time, periods / frequency + quarter * np.arange(3))
-            found = self.contact.drive(instants, {}, names)
-            first, second, third = np.sum([found[name] for name in names], axis=0).tolist()
-            time = instants[-1]
-            amplitude = complex((first - third) / 2, second - (first + third) / 2)
-            calm = calm + 1 if abs(amplitude - before) <= SETTLED * abs(amplitude) else 0
-            if calm == 2 or periods >= MOST:
-                return abs(amplitude)
-            periods, before = 2 * periods, amplitude
+        The end of the answer goes on as a sum of decaying exponentials, one such sum for each step of a sample.
+        """
+        values = {**values, "solver.tolerance": EXACT}
+        natural = self.rest("preload.frequency", values)
+        before = np.sum(self.contact.real(*names))
+        fastest = max(natural, float(frequencies.max()))
+        each = int(np.ceil(LINES / DENSITY * fastest / natural))
+        step = 1 / (natural * DENSITY * each)
+        # Half a period of the highest frequency, so that nothing beyond is hit.
+        length = int(0.5 / fastest / step)
+        knock = np.zeros(each * (SAMPLES + DENSITY) + 1)
+        knock[: length + 1] = np.sin(np.pi * np.arange(length + 1) / length) ** 2
+        knock *= part * abs(self.overtravel(values)) * 4 * np.pi * natural / (length * step)
+        found = self.contact.drive(step * np.arange(len(knock)), {"base.acceleration": knock}, names)
+        answer = np.sum([found[name] for name in names], axis=0) - before
+        end = answer[-SAMPLES * each :].reshape(SAMPLES, each)
+        ratios, course = exponentials(end[:, 0])
+        parts = np.linalg.lstsq(course, end, rcond=None)[0] * ratios[:, None] ** SAMPLES
+        gains = []
+        for frequency in frequencies.tolist():
+            turns = np.exp(-2j * np.pi * frequency * step * np.arange(len(knock)))
+            after = turns[-1] * turns[1] ** np.arange(each) @ (parts / (1 - ratios * turns[each])[:, None]).sum(axis=0)
+            whole = answer @ turns[1:] + after * turns[1]
+            gains.append(abs(whole / (knock @ turns)) / np.sinc(frequency * step) ** 2)
+        return np.array(gains)
 
     def amplitude(self, measurement: Measurement, values: Values) -> Array:
         """Return the amplitudes of a frequency response."""
         own = measurement.quantity
         names = forces(values) if own == "force" else [OUTPUTS[own]]
-        return self.gains(names, measurement.over, values) * measurement.acceleration
+        part = WEAK_OPEN if measurement.is_open else WEAK_CLOSED
+        return self.gains(names, measurement.over, values, part) * measurement.acceleration
 
     def level(self, measurement: Measurement, values: Values) -> Array:
         """Return the accelerations (m/s2) from which on the contact is interrupted, as far as it is linear."""
-        gains = self.gains(["contact.force"], measurement.over, values)
+        gains = self.gains(["contact.force"], measurement.over, values, WEAK_CLOSED)
         monitor = self.monitor(values)
         reserve = self.rest("preload.force", values) - interrupting_force(self.contact, values, monitor.threshold)
         return max(reserve, 1e-9) / (gains * kept(measurement.over, monitor.opening))
