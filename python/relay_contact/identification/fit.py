@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import lstsq
+from scipy.ndimage import minimum_filter
 from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
 from relay_contact.component import Array, Values
 from relay_contact.files import RelayContactError
-from relay_contact.identification.measurement import BOUNCE, RELATIVE, RESPONSE, RINGDOWN, Measurement
+from relay_contact.identification.measurement import BOUNCE, CHATTER, RELATIVE, RESPONSE, RINGDOWN, Measurement
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.identification.ringdown import RingDown, ring_down, shapes
 from relay_contact.spring import STIFFNESS
@@ -29,13 +30,16 @@ NEAR = 3e-3
 ENOUGH = 1e-8
 """Relative change of the sum of squares at which a search ends, and 100 times that of the logarithms."""
 TRIALS = 100
-NEARBY = (0.0, *(sign * 0.1 * number for number in range(1, 13) for sign in (1, -1)))
-TRIED = (
-    ("contact.damping", BOUNCE, tuple(np.arange(1.0, -5.5, -0.5))),
-    *((name, RESPONSE, NEARBY) for name in ("beam.youngsModulus", STIFFNESS, "tip.mass")),
+NEARBY = tuple(np.linspace(-1.2, 1.2, 25).tolist())
+TRIED: tuple[tuple[set[str], dict[str, tuple[float, ...]]], ...] = (
+    ({BOUNCE}, {"contact.damping": tuple(np.arange(1.0, -5.5, -0.5).tolist())}),
+    ({RESPONSE, CHATTER}, {"beam.youngsModulus": NEARBY, STIFFNESS: NEARBY, "tip.mass": NEARBY[::4]}),
 )
-"""Logarithms of parameters that are tried before a search: where the contact does not bounce at all, or a weakly damped
-resonance is on the other side of a frequency that was measured, it finds no way."""
+"""Logarithms of parameters that are tried together before a search: where the contact does not bounce at all, or a
+weakly damped resonance is on the other side of a frequency that was measured, it finds no way."""
+BEGUN, ROUGHLY = 4, 1e-5  # what is enough for searches from the best of them that are better than all beside them
+RIVAL = 10.0
+"""Difference of the sums of squares, of chance 2e-3 for one parameter, below which another answer is told."""
 ROUNDS, CHANGE = 8, 0.005  # of the estimate of the scatter, until it changes by less
 FEWEST = 2.0
 """Degrees of freedom of a scatter below which its estimate does not fall: a measurement that others hardly check would
@@ -130,6 +134,8 @@ class Fit:
     jacobian: Array = field(default_factory=lambda: np.zeros((0, 0)))
     held: float = np.inf
     """Standard deviation of the logarithms of the parameters about zero."""
+    ends: list[Array] = field(default_factory=list)
+    """Of the first searches, from several starts."""
 
     def __post_init__(self) -> None:
         """Begin at the values of the file."""
@@ -181,7 +187,7 @@ class Fit:
         ahead, behind = (np.column_stack([self.residuals(at + sign * step) for step in steps]) for sign in (1, -1))
         return np.asarray((ahead - behind) / (2 * STEP))
 
-    def search(self, last: Derivatives | None) -> Derivatives:
+    def search(self, last: Derivatives | None, enough: float = ENOUGH) -> Derivatives:
         """Find the least squares from where the search is; return the derivatives there, and where exactly."""
 
         def jacobian(at: Array) -> Array:
@@ -197,11 +203,11 @@ class Fit:
             # The data tell nothing of any.
             return start, slopes
         found = least_squares(
-            self.residuals, start, jacobian, bounds=(low, high), ftol=ENOUGH, xtol=100 * ENOUGH, gtol=None,
+            self.residuals, start, jacobian, bounds=(low, high), ftol=enough, xtol=100 * enough, gtol=None,
             max_nfev=TRIALS,
         )  # fmt: skip
         # What holds the search does not let it go far along what the data do not determine.
-        if found.status == 0 and self.held == np.inf:
+        if found.status == 0 and self.held == np.inf and enough == ENOUGH:
             text = "begin from other values in the relay's file"
             raise RelayContactError(f"no least squares after {TRIALS} trials: {text}")
         self.logarithms = found.x
@@ -219,20 +225,47 @@ class Fit:
             if self.estimate() < CHANGE:
                 break
 
+    def squares(self, at: Array) -> float:
+        """Return the sum of squares."""
+        return float((self.residuals(at) ** 2).sum())
+
     def look_around(self) -> None:
         """Begin where the contact bounces, or the spring resounds, nearly as measured."""
-        kinds = {each.measurement.kind for each in self.sets}
-
-        def far(number: int, start: float) -> float:
-            at = self.logarithms.copy()
-            at[number] = start
-            return float((self.residuals(at) ** 2).sum())
-
-        for name, kind, starts in TRIED:
+        measured = {each.measurement.kind for each in self.sets}
+        for kinds, tried in TRIED:
+            names = [each.name for each in self.unknowns]
+            axes = [name for name in tried if name in names and kinds & measured]
+            if not axes:
+                continue
+            shape = [len(tried[name]) for name in axes]
+            points = np.tile(self.logarithms, (*shape, 1))
             for number, each in enumerate(self.unknowns):
-                if each.name == name and kind in kinds:
-                    within = np.clip(starts, each.low, each.high).tolist()
-                    self.logarithms[number] = min(within, key=lambda start: far(number, start))
+                if each.name in axes:
+                    grid = np.meshgrid(*(tried[name] for name in axes), indexing="ij")[axes.index(each.name)]
+                    points[..., number] = np.clip(grid, each.low, each.high)
+            squares = np.apply_along_axis(self.squares, -1, points)
+            lowest = points[squares == minimum_filter(squares, 3)]
+            for start in sorted(lowest, key=self.squares)[:BEGUN]:
+                self.logarithms = start
+                self.search(None, ROUGHLY)
+                if all(np.abs(self.logarithms - end).max() > 100 * STEP for end in self.ends):
+                    self.ends.append(self.logarithms)
+            self.logarithms = min(self.ends, key=self.squares)
+
+    def rivals(self) -> list[Array]:
+        """Return where else a search ends that fits nearly as well."""
+        own, halves, found = self.logarithms, self.halves(), []
+
+        def apart() -> bool:
+            return bool((np.abs(self.logarithms - own)[: len(halves)] > 2 * halves).any())
+
+        for end in self.ends:
+            self.logarithms = end
+            least = self.squares(own) + RIVAL
+            if apart() and self.search(None, ROUGHLY) and apart() and self.squares(self.logarithms) < least:
+                found.append(self.logarithms)
+        self.logarithms = own
+        return found
 
     def slices(self) -> list[slice]:
         """Return the rows of each measurement."""

@@ -225,6 +225,7 @@ def without(fit: Fit, number: int) -> Fit:
     left = [each for index, each in enumerate(fit.unknowns) if index != number]
     smaller = Fit(fit.laboratory, fit.positions, fit.sets, left, held=fit.held)
     smaller.logarithms = np.delete(fit.logarithms, number)
+    smaller.ends = [np.delete(end, number) for end in fit.ends]
     return smaller
 
 
@@ -278,6 +279,9 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         "file that of this relay, and its model complete?"
         for each in found if abs(np.log(each.value / each.unknown.start)) > FAR
     ]  # fmt: skip
+    for other in fit.rivals() if fit.unknowns else []:
+        told = (f"{each.label} = {each.start * np.exp(x):.4g}" for each, x in zip(fit.unknowns, other, strict=False))
+        notes.append(f"other values fit nearly as well: {', '.join(told)}; the intervals are those of the best alone")
     for model in relay.models:
         # What `qualify` takes in place of what was found.
         if kept := sorted(model.parameters.keys() & names):
