@@ -26,7 +26,7 @@ from relay_contact.figures import save
 from relay_contact.identification import Identification, report
 from relay_contact.identification.fit import Fit, Set, Unknown
 from relay_contact.identification.measurement import Measurement
-from relay_contact.identification.prediction import Laboratory
+from relay_contact.identification.prediction import Laboratory, exponentials
 from relay_contact.identification.relay_file import put
 from relay_contact.identification.report import silent
 from relay_contact.qualification import Relay
@@ -306,9 +306,11 @@ def pole(values: Values) -> Array:
 
 
 @pytest.mark.parametrize("is_open", [True, False])
-def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -> None:
+def test_poles_and_responses_are_those_of_the_second_solution(is_open: bool) -> None:
     none, laboratory = np.zeros(1), Laboratory(COMPONENT)
     ring = Measurement(Path("ring.csv"), "ring-down", none, "force", "N", none, is_open=is_open)
+    quantity = "displacement" if is_open else "force"
+    swept = Measurement(Path("a.csv"), "frequency response", none, quantity, "", none, np.ones(5), is_open=is_open)
     chance = np.random.default_rng(SEED)
     for _ in range(20):
         values: Values = {
@@ -316,9 +318,21 @@ def test_the_pole_of_a_ring_down_is_that_of_the_second_solution(is_open: bool) -
             "tip.mass": 10 ** chance.uniform(-6, -3.3), "beam.youngsModulus": 10 ** chance.uniform(10.8, 11.5),
             "contact.damping": 10 ** chance.uniform(-7, -4),
         }  # fmt: skip
-        expected = pole({**values, **(measured.AWAY if is_open else {})})
+        all_values = {**values, **(measured.AWAY if is_open else {})}
+        expected, spring = pole(all_values), Reference(all_values)
         # A weak damping shows as a small change over the periods simulated, with the component's tolerance of 1e-10.
         assert laboratory.predict(ring, values) == pytest.approx(expected, rel=1e-5)
+        over = np.hypot(*expected) / (2 * np.pi) * np.array([0.5, 0.9, 1.0, 1.5, 3.0])
+        exact = [spring.compliances(2 * np.pi * f, 0.0)[1] if is_open else spring.force_response(f) for f in over]
+        left = laboratory.predict(replace(swept, over=over), values) - np.abs(exact)
+        # At the resonance its frequency, right to 1e-6 or so, counts by the quality, up to a thousand.
+        assert np.abs(left).max() < 1e-3 * np.abs(exact).max()
+
+
+def test_rounding_after_a_knock_does_not_grow() -> None:
+    instants, chance = np.arange(64), np.random.default_rng(SEED)
+    motion = np.exp(-0.01 * instants) * np.cos(0.8 * instants) + 1e-8 * chance.standard_normal(64)
+    assert np.abs(exponentials(motion)[0]).max() <= 1 + 1e-12
 
 
 def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
