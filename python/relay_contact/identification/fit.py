@@ -233,16 +233,14 @@ class Fit:
         """Begin where the contact bounces, or the spring resounds, nearly as measured."""
         measured = {each.measurement.kind for each in self.sets}
         for kinds, tried in TRIED:
-            names = [each.name for each in self.unknowns]
-            axes = [name for name in tried if name in names and kinds & measured]
+            axes = [name for name in tried if kinds & measured and any(each.name == name for each in self.unknowns)]
             if not axes:
                 continue
-            shape = [len(tried[name]) for name in axes]
-            points = np.tile(self.logarithms, (*shape, 1))
+            grids = dict(zip(axes, np.meshgrid(*(tried[name] for name in axes), indexing="ij"), strict=True))
+            points = np.tile(self.logarithms, (*grids[axes[0]].shape, 1))
             for number, each in enumerate(self.unknowns):
                 if each.name in axes:
-                    grid = np.meshgrid(*(tried[name] for name in axes), indexing="ij")[axes.index(each.name)]
-                    points[..., number] = np.clip(grid, each.low, each.high)
+                    points[..., number] = np.clip(grids[each.name], each.low, each.high)
             squares = np.apply_along_axis(self.squares, -1, points)
             lowest = points[squares == minimum_filter(squares, 3)]
             for start in sorted(lowest, key=self.squares)[:BEGUN]:
@@ -255,14 +253,12 @@ class Fit:
     def rivals(self) -> list[Array]:
         """Return where else a search ends that fits nearly as well."""
         own, halves, found = self.logarithms, self.halves(), []
-
-        def apart() -> bool:
-            return bool((np.abs(self.logarithms - own)[: len(halves)] > 2 * halves).any())
-
+        least = self.squares(own) + RIVAL
         for end in self.ends:
             self.logarithms = end
-            least = self.squares(own) + RIVAL
-            if apart() and self.search(None, ROUGHLY) and apart() and self.squares(self.logarithms) < least:
+            self.search(None, ROUGHLY)
+            away = np.abs(self.logarithms - own)[: len(halves)]
+            if (away > 2 * halves).any() and self.squares(self.logarithms) < least:
                 found.append(self.logarithms)
         self.logarithms = own
         return found

@@ -183,8 +183,8 @@ class Laboratory:
         for frequency in frequencies.tolist():
             turns = np.exp(-2j * np.pi * frequency * step * np.arange(len(knock)))
             after = turns[-1] * turns[1] ** np.arange(each) @ (parts / (1 - ratios * turns[each])[:, None]).sum(axis=0)
-            whole = answer @ turns[1:] + after * turns[1]
-            gains.append(abs(whole / (knock @ turns)) / np.sinc(frequency * step) ** 2)
+            whole = (answer @ turns[1:] + after * turns[1]) / (knock @ turns)
+            gains.append(abs(whole) / np.sinc(frequency * step) ** 2)
         return np.array(gains)
 
     def amplitude(self, measurement: Measurement, values: Values) -> Array:
