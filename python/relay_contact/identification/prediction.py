@@ -234,8 +234,8 @@ class Laboratory:
         alone = {**asked, "effects.chatter": True, "effects.extremes": True}
         response = respond(self.component, asked, monitor.threshold)
         specimen = Specimen(self.component, alone, monitor, response)
-        levels = [
-            threshold(lambda level, at=float(frequency): vibrated(specimen, at, level)[::2], float(guess))[0]  # type: ignore[misc]
-            for frequency, guess in zip(measurement.over, linear, strict=True)
-        ]
-        return np.array(levels) / linear
+        # Factors: beyond a large one, in place of a level in m/s2, no failure is sought.
+        return np.array([
+            threshold(lambda part, at=at, guess=guess: vibrated(specimen, at, part * guess)[::2], 1.0)[0]  # type: ignore[misc]
+            for at, guess in zip(measurement.over.tolist(), linear.tolist(), strict=True)
+        ])  # fmt: skip
