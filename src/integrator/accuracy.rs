@@ -59,11 +59,11 @@ impl<const S: usize> Whole<'_, S> {
         error.min(swings.fold(0.0, f64::max))
     }
 
-    /// What the forces of closed contacts differ from those of their laws where they turn, and halfway between the nodes of a step that
-    /// is `read` inside, N, at the motion that also has the velocities at the nodes: polynomials through fewer nodes do not show how a
-    /// law bends near zero force, and a fast vibration may be at its zero at all of them, or at the start. Not looked at where next
-    /// terms are far below the error `allowed`, unless what drives the motion has just changed.
-    pub(crate) fn law_residual(&self, allowed: f64, changed: bool, read: bool) -> f64 {
+    /// What the forces of closed contacts differ from those of their laws where they turn, N, at the motion that also has the velocities
+    /// at the nodes: polynomials through fewer nodes do not show how a law bends near zero force, and a fast vibration may be at its
+    /// zero at all of them, or at the start. Not looked at where next terms are far below the error `allowed`, unless what drives the
+    /// motion has just changed.
+    pub(crate) fn law_residual(&self, allowed: f64, changed: bool) -> f64 {
         let Self { model, state, collocation, trial, length, .. } = *self;
         if !changed && trial.next_terms < LOOKED * allowed || collocation.variable == Variable::Root {
             return 0.0;
@@ -82,9 +82,7 @@ impl<const S: usize> Whole<'_, S> {
                 let rate = rate * length - value_and_slope(&approach, at - 1.0).1;
                 Instant { at, d: 0.0, rate }
             };
-            let turns = turns(at.force - link.force, &collocation.places, &nodes.forces).map(|(x, _)| x);
-            let halfway = rates().zip(rates().skip(1)).map(|((before, _), (after, _))| 0.5 * (before + after));
-            for x in turns.chain(halfway.filter(|_| read)) {
+            for (x, _) in turns(at.force - link.force, &collocation.places, &nodes.forces) {
                 let around = rates().zip(rates().skip(1)).find(|(_, (place, _))| *place >= x);
                 let Some((before, after)) = around else { continue };
                 let more = Cubic { a: missed(before), b: missed(after) }.at(x);
