@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -383,7 +383,7 @@ def followed(
     """
     level = least.factor * (1 - APART) if least.factor < MOST else guess
     between = specimen.part == STOP or (specimen.part == CONTACT and specimen.is_open)
-    run = partial(swept, specimen, test, first, order=order)
+    run = cache(partial(swept, specimen, test, first, order=order))
     if between or not run(level)[0]:
         return least
     level, failed = threshold(lambda factor: run(factor)[:2], level, roughly=roughly)
