@@ -242,8 +242,8 @@ class Fit:
                 if each.name in axes:
                     points[..., number] = np.clip(grids[each.name], each.low, each.high)
             squares = np.apply_along_axis(self.squares, -1, points)
-            lowest = points[squares == minimum_filter(squares, 3)]
-            for start in sorted(lowest, key=self.squares)[:BEGUN]:
+            lowest = squares == minimum_filter(squares, 3)
+            for start in points[lowest][np.argsort(squares[lowest], kind="stable")][:BEGUN]:
                 self.logarithms = start
                 self.search(None, ROUGHLY)
                 if all(np.abs(self.logarithms - end).max() > 100 * STEP for end in self.ends):

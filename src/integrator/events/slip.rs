@@ -27,7 +27,7 @@ pub(crate) struct Change {
     pub(crate) at: f64,
     /// From then on.
     phase: Phase,
-    /// Slope there of what [`Locator::beyond`] gives, N/s.
+    /// Slope there of what passes zero, N/s.
     slope: f64,
 }
 
@@ -45,6 +45,10 @@ impl<'a, const S: usize> Locator<'a, S> {
         let (index, friction) = self.whole.model.friction()?;
         let contact = self.link(CONTACT)?;
         Some(Rubbing { contact, along: self.link(index)?, index, friction, law: contact.0.contact()? })
+    }
+
+    fn is_damped(&self) -> bool {
+        self.rubbing().is_some_and(|rubbing| rubbing.law.damping > 0.0)
     }
 
     /// Where in the trial the contact first begins or ceases to slip.
@@ -71,8 +75,7 @@ impl<'a, const S: usize> Locator<'a, S> {
                 let turned = friction.turned(law, sign, across, (z, -along_at.rate));
                 stiffness * (1.0 + whole.length / damping) * turned
             };
-            let (y, slope) = first(before.min(0.0), &wrong, Phase::Stick)?;
-            ((y, slope * damping / (damping + whole.length)), Phase::Stick)
+            (first(before.min(0.0), &wrong, Phase::Stick)?, Phase::Stick)
         } else {
             let [back, forth] = [1.0, -1.0].map(|sign| {
                 let phase = Phase::slip(sign);
@@ -98,9 +101,7 @@ impl<'a, const S: usize> Locator<'a, S> {
     /// their forces answer to it at the nodes alone.
     pub(crate) fn cut_at_change(&mut self, change: &Change) -> Cut {
         let (mut at, mut event) = (change.at, Event::Slides(change.phase));
-        let damped = self.rubbing().is_none_or(|rubbing| rubbing.law.damping > 0.0);
-        // Without one there is no such force for the slip velocity, nor a slope.
-        if change.at > 0.0 && change.slope > 0.0 && !damped {
+        if change.at > 0.0 && change.slope > 0.0 && change.phase != Phase::Stick && !self.is_damped() {
             let beyond = |this: &Self, now: &Instant| this.beyond(now, change.phase);
             let (before, guess) = ((0.0, -f64::MIN_POSITIVE), (change.at, change.slope));
             let (latest, allowed) = (self.whole.length, self.whole.model.tolerance.step);
@@ -122,8 +123,7 @@ impl<'a, const S: usize> Locator<'a, S> {
         if value <= rounding.max(self.whole.model.tolerance.at_event) {
             return false;
         }
-        let damped = self.rubbing().is_some_and(|rubbing| rubbing.law.damping > 0.0);
-        if !damped && phase == Phase::Stick {
+        if phase == Phase::Stick && !self.is_damped() {
             return true;
         }
         let now = self.inside(CONTACT, at);
