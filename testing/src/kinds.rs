@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use fastrand::Rng;
 use relay_contact::inputs::Inputs;
 use relay_contact::reference::Spring;
+use relay_contact::scene::Scene;
 use relay_contact::scene::spring::GivenMode;
 use relay_contact::variables::{AxialForceKind, ContactLawKind, ExcitationKind, FrictionKind, ResistanceKind};
 
@@ -17,7 +18,7 @@ use crate::springs::{mode, of_modes, spring_file};
 pub type Kind = (&'static str, u8, fn(u64) -> Relay);
 
 /// All of them.
-pub const KINDS: [Kind; 15] = [
+pub const KINDS: [Kind; 16] = [
     ("plain", 8, Relay::draw),
     ("held", 4, held),
     ("knots", 12, knots),
@@ -33,6 +34,7 @@ pub const KINDS: [Kind; 15] = [
     ("fixed", 6, parts::fixed_spring),
     ("pusher", 6, parts::pusher),
     ("armature", 6, parts::armature),
+    ("combined", 0, combined),
 ];
 
 /// The relay of a number, of any kind; a third of those that are shaken by a generator alone or by sines have inputs with
@@ -194,31 +196,75 @@ pub fn held(number: u64) -> Relay {
 /// The relay of a number with a second contact as near as the spring moves.
 pub fn changeover(number: u64) -> Relay {
     let mut relay = Relay::draw(number);
-    let rng = &mut Rng::with_seed(!number);
     let scene = &mut relay.scene;
     scene.effects.contact_law = ContactLawKind::Hertz;
-    scene.effects.second_contact = true;
     scene.excitation.amplitude *= 1.5;
+    add_second(scene, &mut Rng::with_seed(!number));
+    relay
+}
+
+/// A second contact.
+fn add_second(scene: &mut Scene, rng: &mut Rng) {
+    scene.effects.second_contact = true;
     scene.second.gap = scene.contact.overtravel.abs() * logarithmic(rng, 0.02, 0.5);
     scene.second.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
     scene.second.damping = logarithmic(rng, 1e-7, 1e-4);
-    relay
 }
 
 /// The relay of a number with friction.
 pub fn friction(number: u64) -> Relay {
     let mut relay = Relay::draw(number);
-    let rng = &mut Rng::with_seed(!number);
-    let scene = &mut relay.scene;
+    relay.scene.effects.contact_law = ContactLawKind::Hertz;
+    add_friction(&mut relay.scene, &mut Rng::with_seed(!number));
+    relay
+}
+
+fn add_friction(scene: &mut Scene, rng: &mut Rng) {
+    parts::keep_axial_force(scene);
     scene.effects.friction = FrictionKind::Coulomb;
-    scene.effects.contact_law = ContactLawKind::Hertz;
-    if scene.effects.axial_force == AxialForceKind::FromDeflection {
-        scene.effects.axial_force = AxialForceKind::FromPreload;
-    }
     scene.friction.coefficient = logarithmic(rng, 0.05, 1.0);
     scene.tip.contact_height = scene.beam.length * logarithmic(rng, 0.01, 0.2);
     if rng.u8(..3) == 0 {
         scene.friction.initial = uniform(rng, -1.0, 1.0);
+    }
+}
+
+/// The relay of a number with several of these at once: inputs with knots, a rough contact, friction, a second contact, twin contacts, a
+/// spring under the fixed contact, a pusher or an armature.
+pub fn combined(number: u64) -> Relay {
+    let rng = &mut Rng::with_seed(number.rotate_left(48));
+    let rough_contact = rng.u8(..3) == 0;
+    let mut relay = match rng.u8(..3) {
+        _ if rough_contact => rough(3 * number),
+        0 => Relay::with_segments(number),
+        _ => Relay::draw(number),
+    };
+    let scene = &mut relay.scene;
+    if !rough_contact {
+        scene.effects.contact_law = ContactLawKind::Hertz;
+    }
+    let has = |rng: &mut Rng| rng.u8(..5) < 2;
+    // Friction of one contact alone is in the model.
+    if has(rng) {
+        add_friction(scene, rng);
+    } else {
+        if has(rng) {
+            add_second(scene, rng);
+        }
+        if has(rng) {
+            parts::add_parallel(scene, rng);
+        }
+    }
+    if has(rng) {
+        parts::add_fixed_spring(scene, rng, &format!("random fixed spring {number}"));
+    }
+    match rng.u8(..4) {
+        0 => parts::add_pusher(&mut relay, rng),
+        1 => parts::add_armature(&mut relay, rng),
+        _ => {}
+    }
+    if relay.knots.is_empty() && !relay.pushes && has(rng) {
+        tie_knots(&mut relay, rng);
     }
     relay
 }

@@ -16,10 +16,14 @@ use crate::springs::{segments, spring_file};
 pub fn parallel(number: u64) -> Relay {
     let forks = !number.is_multiple_of(4);
     let mut relay = if forks { Relay::with_segments(number) } else { Relay::draw(number) };
-    let rng = &mut Rng::with_seed(!number);
-    let scene = &mut relay.scene;
+    relay.scene.effects.contact_law = ContactLawKind::Hertz;
+    add_parallel(&mut relay.scene, &mut Rng::with_seed(!number));
+    relay
+}
+
+/// A contact beside the first, on a tongue of its own where the spring is one of segments.
+pub(crate) fn add_parallel(scene: &mut Scene, rng: &mut Rng) {
     keep_axial_force(scene);
-    scene.effects.contact_law = ContactLawKind::Hertz;
     scene.effects.parallel_contact = true;
     scene.parallel.curvature_radius = logarithmic(rng, 3e-4, 3e-2);
     scene.parallel.damping = logarithmic(rng, 1e-7, 1e-4);
@@ -31,40 +35,50 @@ pub fn parallel(number: u64) -> Relay {
         let contact = segments.contact_position.unwrap_or(segments.length());
         segments.fork_position = Some(contact * uniform(rng, 0.1, 0.9));
     }
-    relay
 }
 
 /// The relay of a number with its fixed contact on a spring.
 pub fn fixed_spring(number: u64) -> Relay {
     let mut relay = Relay::draw(number);
-    let rng = &mut Rng::with_seed(!number);
-    let scene = &mut relay.scene;
+    add_fixed_spring(&mut relay.scene, &mut Rng::with_seed(!number), &format!("random fixed spring {number}"));
+    relay
+}
+
+pub(crate) fn add_fixed_spring(scene: &mut Scene, rng: &mut Rng, name: &str) {
     keep_axial_force(scene);
     let mut other = scene.clone();
     other.beam.thickness *= logarithmic(rng, 0.5, 4.0);
     other.beam.length *= logarithmic(rng, 0.3, 1.0);
     let shape = Shape::Segments(segments(rng, &other));
-    scene.fixed_spring = spring_file(&format!("random fixed spring {number}"), shape);
+    scene.fixed_spring = spring_file(name, shape);
     scene.fixed.stiffness_damping = scene.beam.stiffness_damping * logarithmic(rng, 0.2, 2.0);
     scene.fixed.mass_damping = scene.beam.mass_damping * logarithmic(rng, 0.2, 2.0);
-    relay
 }
 
 /// The relay of a number, closed by a pusher that rests, or moves to and fro.
 pub fn pusher(number: u64) -> Relay {
     let mut relay = Relay::draw(number);
-    let rng = &mut Rng::with_seed(!number);
+    relay.scene.effects.contact_law = ContactLawKind::Hertz;
+    add_pusher(&mut relay, &mut Rng::with_seed(!number));
+    relay
+}
+
+pub(crate) fn add_pusher(relay: &mut Relay, rng: &mut Rng) {
     let (place, _) = push(&mut relay.scene, rng);
     relay.scene.effects.pusher = PusherKind::Prescribed;
     relay.pusher = place;
     relay.pushes = rng.bool();
-    relay
 }
 
 /// The relay of a number, closed by an armature: held, taken from its core by what shakes it, or switched off and on.
 pub fn armature(number: u64) -> Relay {
     let mut relay = Relay::draw(number);
-    let rng = &mut Rng::with_seed(!number);
+    relay.scene.effects.contact_law = ContactLawKind::Hertz;
+    add_armature(&mut relay, &mut Rng::with_seed(!number));
+    relay
+}
+
+pub(crate) fn add_armature(relay: &mut Relay, rng: &mut Rng) {
     let scene = &mut relay.scene;
     let (place, force) = push(scene, rng);
     scene.effects.pusher = PusherKind::Armature;
@@ -96,13 +110,11 @@ pub fn armature(number: u64) -> Relay {
             })
             .collect();
     }
-    relay
 }
 
 /// A pusher that closes an open contact: where it stands (m), and about how hard it presses, N.
 fn push(scene: &mut Scene, rng: &mut Rng) -> (f64, f64) {
     keep_axial_force(scene);
-    scene.effects.contact_law = ContactLawKind::Hertz;
     let overtravel = scene.contact.overtravel.abs();
     let gap = overtravel * logarithmic(rng, 0.05, 1.0);
     scene.contact.overtravel = -gap;
@@ -118,7 +130,7 @@ fn push(scene: &mut Scene, rng: &mut Rng) -> (f64, f64) {
 }
 
 /// With an axial force that is constant.
-fn keep_axial_force(scene: &mut Scene) {
+pub(crate) fn keep_axial_force(scene: &mut Scene) {
     if scene.effects.axial_force == AxialForceKind::FromDeflection {
         scene.effects.axial_force = AxialForceKind::FromPreload;
     }
