@@ -101,8 +101,8 @@
 //! it.
 //!
 //! What is read inside a step, its extremes too, may be wrong where the polynomials are right at their nodes ([`accuracy`]): by the next
-//! terms, extrapolated from polynomials through fewer nodes, and where a force turns by what it differs from its law, at the motion
-//! that also has the velocities at the nodes. That is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]);
+//! terms, extrapolated from polynomials through fewer nodes, and where a force turns, and halfway between nodes, by what it differs from
+//! its law, at the motion that also has the velocities at the nodes. That is compared with the rounding of the free motion ([`constants::FREE_ROUNDING`]);
 //! below it, the next step has the next length of the grid.
 //!
 //! # Step size control
@@ -131,7 +131,7 @@
 //! - *Closing* ([`events::closing`]): on cubics through approach and velocity at the nodes, with bounds of all that they miss. A
 //!   grazing touch is not missed, as it is by a search for changes of sign.
 //! - *Slip* ([`events::slip`]): the trial force of stick passes Coulomb's limit, or the slip velocity its zero. What fades in the
-//!   tangential spring in a part of the step is no polynomial ([`collocation::slip`]).
+//!   tangential spring in a part of the step is no polynomial ([`collocation::slip`]), and part of the slip velocity.
 //! - *Gap* ([`events::gap`]): an armature that has left its core, which damps, is indented no longer, and the force of the magnet bends.
 //! - *Interruption* ([`events::interruption`]): the step goes on where the force passes that of the threshold resistance. Between the
 //!   places where it turns the force polynomial is monotone, so that no dip is missed.

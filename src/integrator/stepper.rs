@@ -124,7 +124,8 @@ impl<'a> Stepper<'a> {
         } else {
             0.0
         };
-        let law_residual = if watched && closed { whole.law_residual(allowed, changed) / allowed } else { 0.0 };
+        let looks = closed && (watched || read);
+        let law_residual = if looks { whole.law_residual(allowed, changed, read) / allowed } else { 0.0 };
         // It only rejects.
         let inside = if law_residual > 1.0 { inside.max(law_residual) } else { inside };
         let all = self.passing();
@@ -139,8 +140,8 @@ impl<'a> Stepper<'a> {
         let fails = ratio > 1.0 && (closed || inside < 1.0);
         // What does not shrink with the step would keep one that is far too short from growing to the next length of the grid.
         let next = error_of_growth::<S>(self.grid.spacing() / SAFETY);
-        let looks = of_inside || closed && self.state.steps.is_multiple_of(MANY_STEPS.into());
-        let stays = looks && ratio <= 1.0 && ratio > next;
+        let tries = of_inside || closed && self.state.steps.is_multiple_of(MANY_STEPS.into());
+        let stays = tries && ratio <= 1.0 && ratio > next;
         if (fails || stays) && error <= of_rounding::<S>(model, self.state, trial, rounding) {
             [if fails { ROUNDED } else { next }; 2]
         } else {
