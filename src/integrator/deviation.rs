@@ -6,7 +6,7 @@
 //! of the errors: each step adds what slow modes feel of its own, each opening and closing what a wrong force or a wrong instant
 //! leaves in the motion, which would die out in a contact that stayed closed.
 //!
-//! Not in it is how an axial force follows the deflection; in exact steps of a linear contact it rests.
+//! In exact steps of a linear contact it rests.
 
 use std::f64::consts::{PI, SQRT_2};
 

@@ -103,15 +103,7 @@ impl<const S: usize> Room<S> {
         trial: &'a Trial<S>,
         length: f64,
     ) -> Whole<'a, S> {
-        Whole {
-            model,
-            state,
-            drive,
-            collocation: self.cache.collocation,
-            trial,
-            axial: &self.scratch.axial.loads,
-            length,
-        }
+        Whole { model, state, drive, collocation: self.cache.collocation, trial, axial: &self.scratch.axial, length }
     }
 }
 

@@ -3,18 +3,20 @@
 //! The loads are collocation polynomials like the contact force, and weak compared with the modal stiffness. They are
 //! found by fixed-point iteration: motion under the current forces, loads of that motion, contact forces under those
 //! loads. The defect of the load polynomials at the start of the step enters the error estimate in the same way as that
-//! of the base acceleration. If the iteration does not converge, the step is too long.
+//! of the base acceleration. If the iteration does not converge, the step is too long. What a deviation of the motion adds to the
+//! loads ([`deviation`](crate::integrator::deviation)) is found in the same way, with the loads linearised about the motion.
 //!
 //! In violent motion the axial force may temporarily exceed the buckling load: the beam then moves away from its
 //! position until the sine in the law of the axial force turns to tension. Such motion is integrated like any other, in
 //! shorter steps.
 
 use crate::beam::axial::Feedback;
-use crate::beam::mode::Modal;
+use crate::beam::mode::{Modal, ModeState};
 use crate::integrator::collocation::coefficients::{ModeColumns, NodalMotion, StepCoefficients};
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::trial::{AxialLoads, FreeResponse, Source, Trial};
 use crate::integrator::constants::{FORCE_ROUNDING, ITERATIONS};
+use crate::link::{MAX_LINKS, Port};
 use crate::math::nodal::{Nodal, add, add_columns, dot};
 use crate::math::simd::{Arithmetic, LANES};
 use crate::model::Model;
@@ -33,6 +35,8 @@ pub(super) struct Rounds<'a, const S: usize> {
     start: Modal,
     room: &'a mut AxialLoads<S>,
     count: u64,
+    /// Deflection of the tip at the nodes, m, once the loads have settled.
+    tip: Nodal<S>,
 }
 
 impl<'a, const S: usize> Rounds<'a, S> {
@@ -48,7 +52,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
         for (loads, start) in room.loads.iter_mut().zip(&start) {
             *loads = [*start; S];
         }
-        Self { model, axial, state, step, collocation, free: free.clone(), start, room, count: 0 }
+        Self { model, axial, state, step, collocation, free: free.clone(), start, room, count: 0, tip: [0.0; S] }
     }
 
     /// Sets the free response to that with the loads of the motion under the forces of a trial; once that changes the loads no more,
@@ -60,8 +64,9 @@ impl<'a, const S: usize> Rounds<'a, S> {
         trial: &Trial<S>,
         free: &mut FreeResponse<S>,
     ) -> Option<bool> {
-        let AxialLoads { loads, motion, next } = &mut *self.room;
-        set_motion::<S, A>((self.model, self.state), self.step, trial, loads, motion);
+        let AxialLoads { loads, motion, next, .. } = &mut *self.room;
+        let forces = trial.links.each_ref().map(|nodes| &nodes.forces);
+        set_motion::<S, A>(self.model, self.step, &self.state.modes, forces, (&trial.accelerations, loads), motion);
         set_loads::<S, A>(self.model, self.axial, motion, next);
         let (change, size) = force_of_change(self.model, loads, next);
         let tolerance = match source {
@@ -74,14 +79,63 @@ impl<'a, const S: usize> Rounds<'a, S> {
             loads.copy_from_slice(next);
         }
         free.ports = self.free.ports;
-        add_loads::<S, A>(self.model, self.step, loads, free);
+        for (port, motion) in self.model.ports.iter().zip(&mut free.ports) {
+            add_loads::<S, A>(port, self.step, loads, motion);
+        }
         free.axial = Some(self.error::<A>());
         (self.count <= ITERATIONS).then_some(settled)
     }
 
+    /// Begins with a deviation without loads, once those of the motion have settled; returns how many rounds that took: those of the
+    /// deviation settle in as many.
+    #[inline(always)]
+    pub(super) fn begin_deviation<A: Arithmetic>(&mut self) -> u64 {
+        let AxialLoads { motion, next, deviation, .. } = &mut *self.room;
+        deviation.fill([0.0; S]);
+        self.tip = tip::<S, A>(self.model, motion);
+        let blocks = next.chunks_mut(LANES).zip(self.axial.slopes.chunks_exact(LANES));
+        for (block, (next, slopes)) in blocks.enumerate().take(deviation.len().div_ceil(LANES)) {
+            let coupled = coupled::<S, A>(self.axial, motion, block);
+            for ((next, slope), coupled) in next.iter_mut().zip(slopes).zip(&coupled) {
+                *next = coupled.map(|coupled| slope + coupled);
+            }
+        }
+        self.count
+    }
+
+    /// One of these rounds: the loads that the deviation adds, linearised about the motion, under the forces that it makes.
+    #[inline(always)]
+    pub(super) fn deviate<A: Arithmetic>(&mut self, trial: &Trial<S>) {
+        let AxialLoads { motion, next, deviation, .. } = &mut *self.room;
+        let motion = motion.get_mut(..deviation.len()).unwrap_or_default();
+        let (starts, forces) =
+            (&self.state.force_error.deviation, trial.links.each_ref().map(|nodes| &nodes.deviation));
+        set_motion::<S, A>(self.model, self.step, starts, forces, (&[0.0; S], deviation), motion);
+        let change = self.tip.map(|y| self.axial.change(y));
+        let mut more = tip::<S, A>(self.model, motion);
+        for (more, y) in more.iter_mut().zip(&self.tip) {
+            *more *= self.axial.slope(*y);
+        }
+        for (block, (loads, next)) in deviation.chunks_mut(LANES).zip(next.chunks(LANES)).enumerate() {
+            let coupled = coupled::<S, A>(self.axial, motion, block);
+            for ((load, next), coupled) in loads.iter_mut().zip(next).zip(&coupled) {
+                let of_nodes = load.iter_mut().zip(more.iter().zip(next)).zip(change.iter().zip(coupled));
+                for ((load, (more, next)), (change, coupled)) in of_nodes {
+                    *load = more * next + change * coupled;
+                }
+            }
+        }
+    }
+
+    /// Adds the motion of a port under the loads of the deviation.
+    #[inline(always)]
+    pub(super) fn add_deviation<A: Arithmetic>(&self, port: &Port, motion: &mut NodalMotion<S>) {
+        add_loads::<S, A>(port, self.step, &self.room.deviation, motion);
+    }
+
     /// The loads of the last round.
-    pub(super) fn loads(self) -> &'a [Nodal<S>] {
-        &self.room.loads
+    pub(super) fn loads(self) -> &'a AxialLoads<S> {
+        self.room
     }
 
     /// Effect on the approach of the contact of the defects of base acceleration and loads at the start.
@@ -99,28 +153,51 @@ impl<'a, const S: usize> Rounds<'a, S> {
     }
 }
 
-/// Computes the modal displacements at the nodes under the forces of a trial, base acceleration and loads.
+/// Computes the modal displacements at the nodes from these starts under forces of the links, base acceleration and loads.
 #[inline(always)]
 fn set_motion<const S: usize, A: Arithmetic>(
-    (model, state): (&Model, &State),
+    model: &Model,
     step: StepCoefficients<'_, S>,
-    trial: &Trial<S>,
-    loads: &[Nodal<S>],
+    starts: &[ModeState],
+    forces: [&Nodal<S>; MAX_LINKS],
+    (accelerations, loads): (&Nodal<S>, &[Nodal<S>]),
     motion: &mut [Nodal<S>],
 ) {
-    let modes = model.modes.iter().zip(&state.modes).zip(step.columns);
+    let modes = model.modes.iter().zip(starts).zip(step.columns);
     for (i, ((moved, ((mode, at), columns)), load)) in motion.iter_mut().zip(modes).zip(loads).enumerate() {
         let mut load = *load;
         let mut q = [0.0; S];
-        for (link, nodes) in model.links.iter().zip(&trial.links) {
-            add::<S, A>(&mut load, link.sense * model.displacement(link.port, i), &nodes.forces);
+        for (link, forces) in model.links.iter().zip(forces) {
+            add::<S, A>(&mut load, link.sense * model.displacement(link.port, i), forces);
         }
-        add::<S, A>(&mut load, -mode.participation, &trial.accelerations);
+        add::<S, A>(&mut load, -mode.participation, accelerations);
         add::<S, A>(&mut q, at.q, &columns.q_from_q);
         add::<S, A>(&mut q, at.v, &columns.q_from_v);
         add_columns::<S, A>(&mut q, &columns.load.columns.displacement, &load);
         *moved = q;
     }
+}
+
+/// Deflection of the tip in a motion at the nodes, m, as deviation from the preload.
+#[inline(always)]
+fn tip<const S: usize, A: Arithmetic>(model: &Model, motion: &[Nodal<S>]) -> Nodal<S> {
+    let mut tip = [0.0; S];
+    for (mode, q) in model.modes.iter().zip(motion) {
+        add::<S, A>(&mut tip, mode.tip, q);
+    }
+    tip
+}
+
+/// What the rows of a block of modes make of a motion at the nodes ([`Feedback::geometric`]): several independent rows at once.
+#[inline(always)]
+fn coupled<const S: usize, A: Arithmetic>(axial: &Feedback, motion: &[Nodal<S>], block: usize) -> [Nodal<S>; LANES] {
+    let mut sums = [[0.0; S]; LANES];
+    for (row, q) in axial.geometric.iter().zip(motion) {
+        for (sum, entry) in sums.iter_mut().zip(row.chunks_exact(LANES).nth(block).unwrap_or_default()) {
+            add::<S, A>(sum, *entry, q);
+        }
+    }
+    sums
 }
 
 /// Computes the modal loads of a motion at the nodes.
@@ -131,24 +208,14 @@ fn set_loads<const S: usize, A: Arithmetic>(
     motion: &[Nodal<S>],
     loads: &mut [Nodal<S>],
 ) {
-    let mut tip = [0.0; S];
-    for (mode, q) in model.modes.iter().zip(motion) {
-        add::<S, A>(&mut tip, mode.tip, q);
-    }
-    let change = tip.map(|y| axial.change(y));
-    // Several independent rows at once.
+    let change = tip::<S, A>(model, motion).map(|y| axial.change(y));
     let blocks = loads.chunks_mut(LANES).zip(axial.slopes.chunks_exact(LANES));
     for (block, (loads, slopes)) in blocks.enumerate() {
-        let mut sums = [[0.0; S]; LANES];
-        for (row, q) in axial.geometric.iter().zip(motion) {
-            for (sum, entry) in sums.iter_mut().zip(row.chunks_exact(LANES).nth(block).unwrap_or_default()) {
-                add::<S, A>(sum, *entry, q);
-            }
-        }
-        for ((load, sum), slope) in loads.iter_mut().zip(&sums).zip(slopes) {
+        let coupled = coupled::<S, A>(axial, motion, block);
+        for ((load, coupled), slope) in loads.iter_mut().zip(&coupled).zip(slopes) {
             let (mut values, slope) = (change, *slope);
-            for (value, sum) in values.iter_mut().zip(sum) {
-                *value *= slope + sum;
+            for (value, coupled) in values.iter_mut().zip(coupled) {
+                *value *= slope + coupled;
             }
             *load = values;
         }
@@ -173,18 +240,16 @@ fn force_of_change<const S: usize>(model: &Model, loads: &[Nodal<S>], next: &[No
     ((root(change) / unit).sqrt(), (root(size) / unit).sqrt())
 }
 
-/// Adds the effect of the loads to a free response.
+/// Adds the motion of a port under loads on the modes.
 #[inline(always)]
 fn add_loads<const S: usize, A: Arithmetic>(
-    model: &Model,
+    port: &Port,
     step: StepCoefficients<'_, S>,
     loads: &[Nodal<S>],
-    free: &mut FreeResponse<S>,
+    motion: &mut NodalMotion<S>,
 ) {
-    for (port, motion) in model.ports.iter().zip(&mut free.ports) {
-        for ((b, columns), load) in port.shape.iter().zip(step.columns).zip(loads) {
-            motion.respond::<A>(&columns.load.columns, &load.map(|load| b * load));
-        }
+    for ((b, columns), load) in port.shape.iter().zip(step.columns).zip(loads) {
+        motion.respond::<A>(&columns.load.columns, &load.map(|load| b * load));
     }
 }
 

@@ -7,7 +7,7 @@ use crate::force_error::Deviation;
 use crate::integrator::collocation::polynomial::Collocation;
 use crate::integrator::collocation::shapes::{Loads, Shapes};
 use crate::integrator::collocation::side_by_side::Loaded;
-use crate::integrator::collocation::trial::{LinkEnd, Trial};
+use crate::integrator::collocation::trial::{AxialLoads, LinkEnd, Trial};
 use crate::link::{MAX_LINKS, MAX_PORTS};
 use crate::math::nodal::{Nodal, add, dot, end, scaled};
 use crate::math::prediction::value_at;
@@ -49,7 +49,7 @@ pub(crate) struct Whole<'a, const S: usize> {
     pub(crate) collocation: &'a Collocation<S>,
     pub(crate) trial: &'a Trial<S>,
     /// Loads of an axial force on the modes.
-    pub(crate) axial: &'a [Nodal<S>],
+    pub(crate) axial: &'a AxialLoads<S>,
     /// Length of the trial, s.
     pub(crate) length: f64,
 }
@@ -57,17 +57,18 @@ pub(crate) struct Whole<'a, const S: usize> {
 impl<const S: usize> Whole<'_, S> {
     /// The modes `at` seconds after the start.
     pub(crate) fn modes(&self, at: f64, ends: &mut ModeStates) {
-        let Self { state, trial, axial, .. } = *self;
+        let Self { state, trial, .. } = *self;
         let forces = trial.links.each_ref().map(|nodes| nodes.forces);
-        self.motion(&Moving { starts: &state.modes, forces, accelerations: trial.accelerations, axial }, at, ends);
+        let (accelerations, axial) = (trial.accelerations, &self.axial.loads);
+        self.motion(&Moving { starts: &state.modes, forces, accelerations, axial }, at, ends);
     }
 
     /// The deviation `at` seconds after the start.
     pub(crate) fn deviation(&self, at: f64, ends: &mut Deviation) {
         let Self { state, trial, .. } = *self;
         let forces = trial.links.each_ref().map(|nodes| nodes.deviation);
-        let starts = &state.force_error.deviation;
-        self.motion(&Moving { starts, forces, accelerations: [0.0; S], axial: &[] }, at, ends);
+        let (starts, axial) = (&state.force_error.deviation, &self.axial.deviation);
+        self.motion(&Moving { starts, forces, accelerations: [0.0; S], axial }, at, ends);
     }
 
     /// Modes `at` seconds after the start.
@@ -294,7 +295,7 @@ mod tests {
                         drive: &drive,
                         collocation: prepared.collocation,
                         trial: &trial,
-                        axial: &scratch.axial.loads,
+                        axial: &scratch.axial,
                         length,
                     };
                     let mut looked = [ModeState::default(); MAX_MODES];

@@ -46,6 +46,9 @@ pub(crate) fn is_long<const S: usize>(length: f64, damping: f64) -> bool {
 }
 
 impl<const S: usize> SlipNodes<S> {
+    /// Of a contact that is open.
+    pub(super) const ZERO: Self = Self { deflections: [0.0; S], rates: [0.0; S], fading: 0.0 };
+
     /// What is left of the fading part `at` seconds after the start, m, at the damping time of the contact, s.
     pub(crate) fn left(&self, at: f64, damping: f64) -> f64 {
         // There is none in most steps.
@@ -85,7 +88,7 @@ pub(super) fn follow<const S: usize, A: Arithmetic>(
 ) {
     let Trial { links, slip, .. } = trial;
     let (contact, along) = (&links[CONTACT], &links[rubbing]);
-    *slip = SlipNodes { deflections: [0.0; S], rates: [0.0; S], fading: 0.0 };
+    *slip = SlipNodes::ZERO;
     let start = -state.links[rubbing].approach - state.slip.way;
     if !state.links[CONTACT].closed {
         return;

@@ -10,7 +10,9 @@ use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::{follow, follow_deviation};
-use crate::integrator::collocation::trial::{Estimate, FreeResponse, LinkEnd, Scratch, Source, Trial};
+use crate::integrator::collocation::trial::{
+    AxialLoads, Estimate, FreeResponse, LinkEnd, Scratch, SlipNodes, Source, Trial,
+};
 use crate::link::{LinkLaw, MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::{Nodal, add, add_products, dot, end, greatest, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
@@ -98,10 +100,12 @@ impl<const S: usize> Step<'_, S> {
                 let solution = self.solve::<L, A>(&linked, free, trial, equations)?;
                 if settled {
                     self.judge::<L, A>(&linked, free, &solution, trial);
+                    self.deviate::<L, A>(&linked, Some(&solution), rounds.as_mut(), trial);
                     break;
                 }
             } else if settled {
                 self.judge_flight::<A>(free, trial);
+                self.deviate::<L, A>(&linked, None, rounds.as_mut(), trial);
                 break;
             }
         }
@@ -128,9 +132,6 @@ impl<const S: usize> Step<'_, S> {
             Judged { linked, step, collocation, free, bent: self.drive.has_just_changed(state.time, step.length) };
         self.set_motion::<A>(&free.ports, &solution.motions, trial);
         judged.estimate::<A>(solution, trial);
-        if state.force_error.deviates() {
-            self.deviate::<L, A>(linked, solution, trial);
-        }
         if !state.is_closed() {
             // A magnet alone: what flies is judged as well.
             let (error, inside) = (trial.error, trial.inner_error);
@@ -146,6 +147,7 @@ impl<const S: usize> Step<'_, S> {
         estimate_in_flight(self.model, self.prepared.step, free, trial);
         if let Source::Given = self.source {
             (trial.error, trial.inner_error) = (Estimate::default(), Estimate::default());
+            trial.slip_deviation = SlipNodes::ZERO;
         }
         self.set_motion::<A>(&free.ports, &[], trial);
     }
@@ -177,13 +179,39 @@ impl<const S: usize> Step<'_, S> {
         free.axial = None;
     }
 
-    /// Sets the forces that the deviation makes, linearised about the motion.
+    /// Sets the forces that the deviation makes, linearised about the motion, and the loads of an axial force that follows it.
     #[inline(always)]
-    #[expect(clippy::indexing_slicing, reason = "links and ports of the model, and unknowns in use")]
     fn deviate<const L: usize, A: Arithmetic>(
         &self,
         linked: &Linked<S, L>,
+        solution: Option<&Solution<'_, S, L>>,
+        mut rounds: Option<&mut Rounds<'_, S>>,
+        trial: &mut Trial<S>,
+    ) {
+        if !self.state.force_error.deviates() {
+            return;
+        }
+        let mut left = rounds.as_mut().map_or(0, |rounds| rounds.begin_deviation::<A>());
+        loop {
+            if let Some(solution) = solution {
+                self.set_deviation::<L, A>(linked, solution, rounds.as_deref(), trial);
+            }
+            match &mut rounds {
+                Some(rounds) if left > 0 => rounds.deviate::<A>(trial),
+                _ => break,
+            }
+            left -= 1;
+        }
+    }
+
+    /// Sets these forces, under the loads as they are.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "links and ports of the model, and unknowns in use")]
+    fn set_deviation<const L: usize, A: Arithmetic>(
+        &self,
+        linked: &Linked<S, L>,
         solution: &Solution<'_, S, L>,
+        rounds: Option<&Rounds<'_, S>>,
         trial: &mut Trial<S>,
     ) {
         let Self { model, state, .. } = *self;
@@ -191,9 +219,12 @@ impl<const S: usize> Step<'_, S> {
         let mut own = [NodalMotion::ZERO; L];
         for (own, unknown) in own.iter_mut().zip(self.unknowns.iter()) {
             let link = &model.links[unknown.link];
-            let deviation = model.ports[link.port].part(&state.force_error.deviation);
-            let port = step.free_motion::<A>(link.port, deviation);
-            own.add::<A>(-link.sense, &port);
+            let port = &model.ports[link.port];
+            let mut motion = step.free_motion::<A>(link.port, port.part(&state.force_error.deviation));
+            if let Some(rounds) = rounds {
+                rounds.add_deviation::<A>(port, &mut motion);
+            }
+            own.add::<A>(-link.sense, &motion);
             if let LinkLaw::Friction(_) = link.law {
                 // Where it sticks.
                 own.d = own.d.map(|d| d + state.force_error.slip);
@@ -352,7 +383,7 @@ impl<const S: usize> Step<'_, S> {
     /// there.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "links and ports of the model")]
-    fn set_end<A: Arithmetic>(&self, trial: &mut Trial<S>, on_modes: Option<&[Nodal<S>]>) {
+    fn set_end<A: Arithmetic>(&self, trial: &mut Trial<S>, on_modes: Option<&AxialLoads<S>>) {
         let Self { model, state, .. } = *self;
         let Prepared { step, .. } = self.prepared;
         let ends = trial.modes.as_chunks_mut().0;
@@ -364,9 +395,12 @@ impl<const S: usize> Step<'_, S> {
             let ends = trial.deviation.as_chunks_mut().0;
             move_freely::<S, A>(step.end, &state.force_error.deviation, ends);
             self.load_ports::<A>(trial.links.iter().map(|nodes| &nodes.deviation), ends);
+            if let Some(on_modes) = on_modes {
+                load_each::<S, A>(step.end, ends, &on_modes.deviation);
+            }
         }
         if let Some(on_modes) = on_modes {
-            load_each::<S, A>(step.end, ends, on_modes);
+            load_each::<S, A>(step.end, ends, &on_modes.loads);
         }
         let mut sums: [Pairs; MAX_PORTS] = [[0.0; 2 * LANES]; MAX_PORTS];
         for (port, sum) in model.ports.iter().zip(&mut sums) {

@@ -3,7 +3,7 @@
 use bytemuck::{Zeroable, zeroed_box};
 
 use crate::beam::mode::ModeStates;
-use crate::force_error::Deviation;
+use crate::force_error::{Deviation, MODES};
 use crate::integrator::collocation::coefficients::NodalMotion;
 use crate::integrator::collocation::elimination::Equations;
 use crate::integrator::collocation::newton::{FEW, Joined, Tangent};
@@ -92,12 +92,14 @@ pub struct Scratch<const S: usize> {
 impl<const S: usize> Scratch<S> {
     /// For the model.
     pub fn new(model: &Model) -> Self {
-        let on_modes = || vec![[0.0; S]; if model.axial.is_some() { model.modes.len() } else { 0 }];
+        let count = if model.axial.is_some() { model.modes.len() } else { 0 };
+        let on_modes = || vec![[0.0; S]; count];
+        let deviation = vec![[0.0; S]; count.min(MODES)];
         Self {
             free: Box::default(),
             joined: Joined::new(model),
             many: (model.links.len() > FEW).then(zeroed_box),
-            axial: AxialLoads { loads: on_modes(), motion: on_modes(), next: on_modes() },
+            axial: AxialLoads { loads: on_modes(), motion: on_modes(), next: on_modes(), deviation },
         }
     }
 }
@@ -141,6 +143,8 @@ pub struct AxialLoads<const S: usize> {
     pub(super) motion: Vec<Nodal<S>>,
     /// The loads of that motion.
     pub(super) next: Vec<Nodal<S>>,
+    /// What the deviation adds to the loads, on its modes.
+    pub(crate) deviation: Vec<Nodal<S>>,
 }
 
 /// Estimate of an error, N.
