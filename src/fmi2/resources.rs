@@ -33,8 +33,9 @@ impl Identity {
 
 /// The folder of a `file:` URI, or of a path, which some importers pass instead; none for another URI.
 pub(super) fn folder(location: &str) -> Option<PathBuf> {
-    // A single letter is a drive.
-    let uri = location.split_once(':').filter(|(scheme, _)| scheme.len() > 1);
+    // A single letter is a drive, and a path may have a colon.
+    let in_scheme = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);
+    let uri = location.split_once(':').filter(|(scheme, _)| scheme.len() > 1 && scheme.chars().all(in_scheme));
     let path = match uri {
         None => location.to_owned(),
         Some((scheme, rest)) if scheme.eq_ignore_ascii_case("file") => {
@@ -63,7 +64,9 @@ fn decoded(text: &str) -> Option<String> {
     let mut parts = text.split('%');
     let mut bytes = parts.next()?.as_bytes().to_vec();
     for part in parts {
-        let code = part.get(..2).and_then(|code| u8::from_str_radix(code, 16).ok());
+        // A sign, which Rust would take, is no digit.
+        let digits = part.get(..2).filter(|digits| digits.chars().all(|digit| digit.is_ascii_hexdigit()));
+        let code = digits.and_then(|digits| u8::from_str_radix(digits, 16).ok());
         bytes.push(code.unwrap_or(b'%'));
         bytes.extend(part.bytes().skip(if code.is_some() { 2 } else { 0 }));
     }
@@ -81,6 +84,8 @@ mod tests {
             ("file:/tmp/resources", Some("/tmp/resources")),
             ("FILE://localhost/tmp/%C3%A4", Some("/tmp/ä")),
             ("/tmp/100%/resources", Some("/tmp/100%/resources")),
+            ("/tmp/12:30/resources", Some("/tmp/12:30/resources")),
+            ("file:///tmp/%+5", Some("/tmp/%+5")),
             ("file:///tmp/100%/x%zz", Some("/tmp/100%/x%zz")),
             ("file://server/share", None),
             ("http://example.org/resources", None),
