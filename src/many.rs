@@ -1,12 +1,12 @@
 //! Many scenes at once, on all cores of a machine.
 
 use std::num::NonZero;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::Mutex;
 use std::thread;
 
 use crate::error::{SceneError, StepError, caught};
 use crate::scene::file::SceneFile;
+use crate::shared::open;
 use crate::simulation::{Kept, Simulation};
 
 /// Why one of many scenes has no results; the others have theirs.
@@ -69,23 +69,20 @@ fn run(scene: &SceneFile) -> Result<Vec<f64>, RunError> {
 
 /// Does the same with each item on so many threads, of which this one is the first: where the system gives no others (WebAssembly
 /// has none) it does all. A panic is an error of its item.
-fn side_by_side<T: Sync, R: Send + Sync>(
+fn side_by_side<T: Sync, R: Send>(
     items: &[T],
     workers: NonZero<usize>,
     work: impl Fn(&T) -> Result<R, RunError> + Sync,
     progress: impl FnMut(usize) + Send,
 ) -> Vec<Result<R, RunError>> {
-    let rows: Vec<OnceLock<Result<R, RunError>>> = items.iter().map(|_| OnceLock::new()).collect();
-    let (next, told) = (AtomicUsize::new(0), Mutex::new((0, progress)));
+    let mut rows: Vec<_> = items.iter().map(|_| Err(RunError::Panic("not run".to_owned()))).collect();
+    let (left, told) = (Mutex::new(items.iter().zip(&mut rows)), Mutex::new((0, progress)));
+    // Each worker takes the next item once it has done one, as some take much longer than others.
+    let next = || open(&left).next();
     let worker = || {
-        // Each takes the next item once it has done one, as some take much longer than others.
-        while let Some((item, row)) = {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            items.get(number).zip(rows.get(number))
-        } {
-            let done = caught(|| work(item));
-            let _ = row.set(done.unwrap_or_else(|panic| Err(RunError::Panic(panic))));
-            let mut told = told.lock().unwrap_or_else(PoisonError::into_inner);
+        while let Some((item, row)) = next() {
+            *row = caught(|| work(item)).unwrap_or_else(|panic| Err(RunError::Panic(panic)));
+            let mut told = open(&told);
             told.0 += 1;
             let count = told.0;
             told.1(count);
@@ -99,8 +96,7 @@ fn side_by_side<T: Sync, R: Send + Sync>(
         }
         worker();
     });
-    let missing = || Err(RunError::Panic("not run".to_owned()));
-    rows.into_iter().map(|row| row.into_inner().unwrap_or_else(missing)).collect()
+    rows
 }
 
 #[cfg(test)]

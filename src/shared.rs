@@ -102,7 +102,7 @@ impl<K: PartialEq, V: Clone> Found<K, V> {
 }
 
 /// What a lock holds is whole whenever it is free.
-fn open<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(crate) fn open<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
