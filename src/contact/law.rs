@@ -16,7 +16,7 @@
 //! 13(1), 52 use; bonded: the same without `max`. It is the power 1 of `d - d_0 + F_0 / k_j0`, and closed while `g` is positive.
 
 use crate::math::nodal::Nodal;
-use crate::scene::{Contact, Material, Scene};
+use crate::scene::{Contact, Material, Parallel, Scene, Second};
 use crate::variables::ContactLawKind;
 
 /// Exponent of the indentation in the law of Hertz, 1. Powers of it are square roots.
@@ -123,9 +123,27 @@ impl Law {
         Self::power(base.powf(exponent), exponent, contact.damping)
     }
 
-    /// The contact of a scene before it is linearised, without damping if that is switched off.
+    /// The contact of a scene before it is linearised.
     pub(crate) fn of(scene: &Scene) -> Self {
-        let mut contact = scene.contact;
+        Self::of_contact(scene, scene.contact)
+    }
+
+    /// The second contact of a scene, if it has one.
+    pub(crate) fn of_second(scene: &Scene) -> Option<Self> {
+        let Second { curvature_radius, damping, stiffness, .. } = scene.second;
+        let own = Contact { curvature_radius, damping, stiffness, ..scene.contact };
+        scene.effects.second_contact.then(|| Self::of_contact(scene, own))
+    }
+
+    /// The parallel contact of a scene, if it has one.
+    pub(crate) fn of_parallel(scene: &Scene) -> Option<Self> {
+        let Parallel { curvature_radius, damping, stiffness, .. } = scene.parallel;
+        let own = Contact { curvature_radius, damping, stiffness, ..scene.contact };
+        scene.effects.parallel_contact.then(|| Self::of_contact(scene, own))
+    }
+
+    /// A contact in the place of that of the scene, without damping if that is switched off.
+    fn of_contact(scene: &Scene, mut contact: Contact) -> Self {
         if !scene.effects.contact_damping {
             contact.damping = 0.0;
         }
@@ -133,27 +151,6 @@ impl Law {
             ContactLawKind::Rough => Self::rough(&contact),
             ContactLawKind::Hertz | ContactLawKind::Linearised | ContactLawKind::Bonded => Self::hertz(&contact),
         }
-    }
-
-    /// The second contact of a scene, if it has one.
-    pub(crate) fn of_second(scene: &Scene) -> Option<Self> {
-        let second = &scene.second;
-        let own = (second.curvature_radius, second.stiffness, second.damping);
-        scene.effects.second_contact.then(|| Self::of_other(scene, own))
-    }
-
-    /// The parallel contact of a scene, if it has one.
-    pub(crate) fn of_parallel(scene: &Scene) -> Option<Self> {
-        let parallel = &scene.parallel;
-        let own = (parallel.curvature_radius, parallel.stiffness, parallel.damping);
-        scene.effects.parallel_contact.then(|| Self::of_other(scene, own))
-    }
-
-    /// A contact of the materials of the first, with this radius (m), stiffness (N/m) and damping time (s).
-    fn of_other(scene: &Scene, (curvature_radius, stiffness, damping): (f64, f64, f64)) -> Self {
-        let mut as_first = scene.clone();
-        as_first.contact = Contact { curvature_radius, damping, stiffness, ..scene.contact };
-        Self::of(&as_first)
     }
 
     /// With its stiffness at a force scale (N), and what counts as none of a force computed to a relative tolerance of that. A contact
