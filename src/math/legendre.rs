@@ -1,28 +1,25 @@
 //! Legendre polynomials and the Gauss quadrature built on them.
 
-/// Values of the Legendre polynomials P_0 ... P_(count-1) at `x` in [-1, 1].
-pub fn polynomials(x: f64, count: usize) -> Vec<f64> {
-    let mut values = Vec::with_capacity(count);
-    let (mut previous, mut current) = (0.0, 1.0);
-    for degree in 0..count {
-        values.push(current);
-        (previous, current) = (current, next(degree, x, previous, current));
-    }
-    values
+use std::iter;
+
+/// P_(n-1) and P_n at `x` for n = 0, 1, ... (Bonnet's recursion), with P_(-1) = 0.
+fn neighbours(x: f64) -> impl Iterator<Item = (f64, f64)> {
+    let mut n = 0.0;
+    iter::successors(Some((0.0, 1.0)), move |(previous, current)| {
+        let next = ((2.0 * n + 1.0) * x * current - n * previous) / (n + 1.0);
+        n += 1.0;
+        Some((*current, next))
+    })
 }
 
-/// P_(n+1) from P_(n-1) and P_n (Bonnet's recursion).
-fn next(n: usize, x: f64, previous: f64, current: f64) -> f64 {
-    let n = n as f64;
-    ((2.0 * n + 1.0) * x * current - n * previous) / (n + 1.0)
+/// Values of the Legendre polynomials P_0 ... P_(count-1) at `x` in [-1, 1].
+pub fn polynomials(x: f64, count: usize) -> Vec<f64> {
+    neighbours(x).take(count).map(|(_, value)| value).collect()
 }
 
 /// P_degree(x) and its derivative at |x| < 1.
 fn value_and_slope(degree: usize, x: f64) -> (f64, f64) {
-    let (mut previous, mut current) = (0.0, 1.0);
-    for n in 0..degree {
-        (previous, current) = (current, next(n, x, previous, current));
-    }
+    let (previous, current) = neighbours(x).nth(degree).unwrap_or_default();
     (current, degree as f64 * (previous - x * current) / (1.0 - x * x))
 }
 
