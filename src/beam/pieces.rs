@@ -3,7 +3,7 @@
 use crate::beam::section::Section;
 use crate::math::legendre;
 use crate::scene::Scene;
-use crate::scene::spring::Segments;
+use crate::scene::spring::{PointMass, Segments};
 
 /// Largest ratio of thickness or width between the ends of a piece: 16 nodes then represent `1 / (E I)` to rounding,
 /// whose poles lie 4.3 half-lengths from the middle.
@@ -101,11 +101,11 @@ impl Pieces {
     pub fn new(spring: &Segments, scene: &Scene) -> Self {
         let same = SAME * spring.length();
         let contact = spring.contact_position.unwrap_or(spring.length());
-        let masses = spring.masses.iter().map(|at| (at.position, at.mass, at.rotary_inertia));
-        let masses = masses.chain([(contact, scene.tip.mass, scene.tip.rotary_inertia)]);
-        let pushed = scene.pushed_at().map(|position| (position, 0.0, 0.0));
-        let mut carried: Vec<_> = masses.chain(pushed).collect();
-        carried.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let rivet = PointMass { position: contact, mass: scene.tip.mass, rotary_inertia: scene.tip.rotary_inertia };
+        // Nothing, but a place to be cut at.
+        let pusher = scene.pushed_at().map(|position| PointMass { position, ..PointMass::default() });
+        let mut carried: Vec<_> = spring.masses.iter().copied().chain([rivet]).chain(pusher).collect();
+        carried.sort_by(|a, b| a.position.total_cmp(&b.position));
         let mut pieces = Vec::new();
         let mut start = 0.0;
         for segment in &spring.segments {
@@ -119,8 +119,8 @@ impl Pieces {
                 mass: 0.0,
                 inertia: 0.0,
             };
-            for &(position, ..) in carried.iter().filter(|(at, ..)| *at < end - same) {
-                let share = 1.0 - (end - position) / rest.length;
+            for at in carried.iter().filter(|at| at.position < end - same) {
+                let share = 1.0 - (end - at.position) / rest.length;
                 if share * rest.length > same {
                     let [first, last] = rest.cut(share);
                     first.graded(&mut pieces);
@@ -135,10 +135,9 @@ impl Pieces {
             let start = end;
             end += piece.length;
             ends.push(end);
-            let here = |at: f64| at > start + same && at <= end + same;
-            for (_, mass, inertia) in carried.iter().filter(|(at, ..)| here(*at)) {
-                piece.mass += mass;
-                piece.inertia += inertia;
+            for at in carried.iter().filter(|at| at.position > start + same && at.position <= end + same) {
+                piece.mass += at.mass;
+                piece.inertia += at.rotary_inertia;
             }
         }
         let before = |position: f64| ends.iter().filter(|end| **end <= position + same).count();
