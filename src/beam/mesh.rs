@@ -10,7 +10,7 @@ use crate::beam::pieces::Pieces;
 use crate::math::legendre;
 
 pub struct Mesh<'a> {
-    spring: &'a Pieces,
+    pub spring: &'a Pieces,
     stretches: Vec<Stretch>,
     rule: Rule,
 }
@@ -36,6 +36,14 @@ pub struct Bend {
     pub deflection: Vec<f64>,
     /// Deflection (m) and slope (1) at the ends of the stretches.
     pub ends: Vec<(f64, f64)>,
+}
+
+impl Bend {
+    /// Deflection (m) and slope (1) at the end of so many stretches.
+    pub fn at_end(&self, stretches: usize) -> (f64, f64) {
+        let last = stretches.checked_sub(1).and_then(|last| self.ends.get(last));
+        last.copied().unwrap_or_default()
+    }
 }
 
 impl<'a> Mesh<'a> {
@@ -104,31 +112,20 @@ impl<'a> Mesh<'a> {
         self.bent(moment, parts.concat())
     }
 
-    /// Under a force (N) and a moment (N m) at the end of one stretch.
-    fn loaded(&self, stretch: usize, force: f64, moment: f64) -> Bend {
-        let ends = (0..self.stretches.len()).map(|at| if at == stretch { (force, moment) } else { (0.0, 0.0) });
+    /// Under unit force at the end of so many stretches.
+    pub fn pushed(&self, stretches: usize) -> Bend {
+        self.loaded(stretches, (1.0, 0.0))
+    }
+
+    /// Under unit moment there.
+    pub fn turned(&self, stretches: usize) -> Bend {
+        self.loaded(stretches, (0.0, 1.0))
+    }
+
+    /// Under a force (N) and a moment (N m) there.
+    fn loaded(&self, stretches: usize, load: (f64, f64)) -> Bend {
+        let ends = (0..self.stretches.len()).map(|at| if at + 1 == stretches { load } else { (0.0, 0.0) });
         self.under(&vec![0.0; self.stretches.len() * self.rule.len()], ends)
-    }
-
-    /// Under unit force at the contact.
-    pub fn pushed(&self) -> Bend {
-        self.loaded(self.spring.before_contact.saturating_sub(1), 1.0, 0.0)
-    }
-
-    /// Under unit force at the pusher, where there is one.
-    pub fn pushed_by_pusher(&self) -> Option<Bend> {
-        Some(self.loaded(self.spring.before_pusher?.checked_sub(1)?, 1.0, 0.0))
-    }
-
-    /// Under unit moment at the contact.
-    pub fn turned(&self) -> Bend {
-        self.loaded(self.spring.before_contact.saturating_sub(1), 0.0, 1.0)
-    }
-
-    /// Under unit force and under unit moment at the end.
-    pub fn pushed_at_end(&self) -> [Bend; 2] {
-        let last = self.stretches.len().saturating_sub(1);
-        [self.loaded(last, 1.0, 0.0), self.loaded(last, 0.0, 1.0)]
     }
 
     /// Under the inertia of unit acceleration, and of unit angular acceleration about the clamp.
@@ -158,7 +155,7 @@ impl<'a> Mesh<'a> {
 
     /// Under what unit axial compression between clamp and contact does in this shape.
     pub fn compressed(&self, shape: &Bend) -> Bend {
-        let (at_contact, _) = self.at_contact(shape);
+        let (at_contact, _) = shape.at_end(self.spring.before_contact);
         let nodes = self.spring.before_contact * self.rule.len();
         let moment = shape.deflection.iter().enumerate();
         let moment = moment.map(|(n, deflection)| if n < nodes { at_contact - deflection } else { 0.0 });
@@ -190,22 +187,6 @@ impl<'a> Mesh<'a> {
             return self.compression(0.5 * force);
         }
         (compression.rest > 0.0).then_some(compression)
-    }
-
-    /// Deflection (m) and slope (1) at the contact.
-    pub fn at_contact(&self, shape: &Bend) -> (f64, f64) {
-        Self::at_end(shape, self.spring.before_contact)
-    }
-
-    /// Deflection at the pusher, m; 0 without one.
-    pub fn at_pusher(&self, shape: &Bend) -> f64 {
-        self.spring.before_pusher.map_or(0.0, |before| Self::at_end(shape, before).0)
-    }
-
-    /// The same at the end of so many stretches.
-    fn at_end(shape: &Bend, stretches: usize) -> (f64, f64) {
-        let last = stretches.checked_sub(1).and_then(|last| shape.ends.get(last));
-        last.copied().unwrap_or_default()
     }
 
     /// Factors of the products of deflections in the kinetic energy, and of slopes in the work of an axial compression:

@@ -31,7 +31,7 @@ const STATIC_SHAPES: usize = 20;
 /// The uniform spring of the same mass that deflects and turns as much at its end under a force there.
 pub fn equivalent(spring: &Pieces) -> Section {
     let mesh = Mesh::new(spring, 1);
-    let (deflection, slope) = mesh.at_contact(&mesh.pushed());
+    let (deflection, slope) = mesh.pushed(spring.before_contact).at_end(spring.before_contact);
     let length = 1.5 * deflection / slope;
     Section {
         length,
@@ -52,6 +52,7 @@ pub fn static_space(spring: &Pieces, section: &Section) -> Space {
 /// in units of the equivalent section. `None` if it buckles.
 pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64, rubs: bool) -> Option<Space> {
     let mesh = Mesh::new(spring, count.max(STATIC_SHAPES));
+    let (contact, end) = (spring.before_contact, spring.parts.len());
     let pushed = pushed_under(&mesh, section, axial_force)?;
     let compression = if axial_force == 0.0 { None } else { Some(mesh.compression(axial_force)?) };
     let under = |shape: Bend| match &compression {
@@ -59,17 +60,16 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
         None => shape,
     };
     let [moved, turned] = mesh.shaken();
-    let [force, moment] = mesh.pushed_at_end();
-    let mut starts = vec![moved, moment, turned];
+    let mut starts = vec![moved, mesh.turned(end), turned];
     if spring.goes_on() {
-        starts.push(force);
+        starts.push(mesh.pushed(end));
         if rubs {
-            starts.push(mesh.turned());
+            starts.push(mesh.turned(contact));
         }
     }
     // Where the contact is, it is the shape of that.
-    let elsewhere = spring.before_pusher != Some(spring.before_contact);
-    let pusher = mesh.pushed_by_pusher().filter(|_| elsewhere && count > 1);
+    let elsewhere = spring.before_pusher.filter(|pusher| *pusher != contact && count > 1);
+    let pusher = elsewhere.map(|pusher| mesh.pushed(pusher));
     let starts = iter::once(pushed).chain(starts.into_iter().map(under)).collect();
     let shapes = krylov(&mesh, pusher.map(under), starts, |shape| under(mesh.swung(shape)), count);
     Some(space(&mesh, &shapes, section))
@@ -77,14 +77,15 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
 
 fn static_shapes(mesh: &Mesh) -> Vec<Bend> {
     let [moved, _] = mesh.shaken();
-    let starts = [mesh.pushed(), moved].into_iter().chain(mesh.pushed_by_pusher());
+    let pusher = mesh.spring.before_pusher.map(|pusher| mesh.pushed(pusher));
+    let starts = [mesh.pushed(mesh.spring.before_contact), moved].into_iter().chain(pusher);
     krylov(mesh, None, starts.collect(), |shape| mesh.compressed(shape), STATIC_SHAPES)
 }
 
 /// The shape under unit contact force and an axial compression (N).
 fn pushed_under(mesh: &Mesh, section: &Section, axial_force: f64) -> Option<Bend> {
     if axial_force == 0.0 {
-        return Some(mesh.pushed());
+        return Some(mesh.pushed(mesh.spring.before_contact));
     }
     let shapes = static_shapes(mesh);
     let space = space(mesh, &shapes, section);
@@ -116,6 +117,7 @@ fn krylov(
 
 /// The space of orthonormal shapes.
 fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
+    let (contact, pusher) = (mesh.spring.before_contact, mesh.spring.before_pusher);
     let (masses, lengths, ends) = mesh.inertia();
     let products = |columns: Vec<Vec<f64>>| {
         let columns: Vec<_> = columns.into_iter().map(DVector::from_vec).collect();
@@ -143,11 +145,11 @@ fn space(mesh: &Mesh, shapes: &[Bend], section: &Section) -> Space {
         products(shapes.iter().map(turned).collect()),
         vector(&loaded),
         Places {
-            tip: vector(&|shape| mesh.at_contact(shape).0),
-            slope: vector(&|shape| mesh.at_contact(shape).1),
-            pusher: vector(&|shape| mesh.at_pusher(shape)),
+            tip: vector(&|shape| shape.at_end(contact).0),
+            slope: vector(&|shape| shape.at_end(contact).1),
+            pusher: vector(&|shape| pusher.map_or(0.0, |pusher| shape.at_end(pusher).0)),
             // Side by side at one tip; tongues of their own come as modes of their own.
-            parallel: vector(&|shape| mesh.at_contact(shape).0),
+            parallel: vector(&|shape| shape.at_end(contact).0),
         },
     )
 }
