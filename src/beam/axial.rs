@@ -46,11 +46,8 @@ impl Feedback {
         modes: &[Mode],
         shapes: &[DVector<f64>],
     ) -> Self {
-        let modal = |value: &dyn Fn(usize) -> f64| -> Modal {
-            std::array::from_fn(|i| if i < modes.len() { value(i) } else { 0.0 })
-        };
         let product = |a, b| space.slope_product(section.length, a, b);
-        let row = |a| modal(&|i| shapes.get(i).map_or(0.0, |b| product(a, b)));
+        let row = |a| std::array::from_fn(|i| shapes.get(i).map_or(0.0, |b| product(a, b)));
         let geometric: Vec<Modal> = shapes.iter().map(row).collect();
         let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
         let mut slopes = [0.0; MAX_MODES];
