@@ -134,27 +134,26 @@ fn frequency((scene, springs, preload): (&Scene, &Springs, &Preload), laws: Laws
     Assembly::new(parts, laws, springs.armature.as_ref()).frequency(&modes, coil)
 }
 
-/// Blows of the contact, of a parallel and a second one, and of the pusher; of what is not there like those of the contact.
+/// Blows of the contact, of a parallel and a second one, and of the pusher, as the scene may have them; of what is not there like
+/// those of the contact.
 fn blows(scene: &Scene, bending_force: f64, power: &Law, [parallel, second]: [Option<Law>; 2]) -> [Blow; 4] {
-    let pusher = scene.pushed_at().map(|_| Law::linear(scene.pusher.stiffness, scene.pusher.damping));
-    [Some(*power), parallel, second, pusher].map(|law| blow(scene, bending_force, &law.unwrap_or(*power)))
-}
-
-/// A blow as the scene may have it.
-fn blow(scene: &Scene, bending_force: f64, law: &Law) -> Blow {
     // A blow fifty times the force of the bent spring; with Hertz the number of modes follows it by the 18th root.
     let force = match scene.effects.contact_law {
         ContactLawKind::Hertz | ContactLawKind::Rough => 50.0 * bending_force,
         ContactLawKind::Linearised | ContactLawKind::Bonded => bending_force,
     };
-    Blow {
-        mass_damping: scene.beam.mass_damping,
-        stiffness_damping: scene.beam.stiffness_damping,
-        contact_stiffness: law.tangent_stiffness(force),
-        contact_damping: law.damping,
-        bare: scene.tip.mass == 0.0,
-        steep: scene.rubs() || law.exponent < 1.4,
-    }
+    let pusher = scene.pushed_at().map(|_| Law::linear(scene.pusher.stiffness, scene.pusher.damping));
+    [Some(*power), parallel, second, pusher].map(|law| {
+        let law = law.unwrap_or(*power);
+        Blow {
+            mass_damping: scene.beam.mass_damping,
+            stiffness_damping: scene.beam.stiffness_damping,
+            contact_stiffness: law.tangent_stiffness(force),
+            contact_damping: law.damping,
+            bare: scene.tip.mass == 0.0,
+            steep: scene.rubs() || law.exponent < 1.4,
+        }
+    })
 }
 
 /// Force of the springs bent by the overtravel, at least by 0.1 mm, N: of one of them 3 E I max(|s|, 0.1 mm) / L^3.
