@@ -93,7 +93,7 @@ impl Model {
                 closed_loop,
                 generator,
                 initial: *initial,
-                missed: springs.missed(hardest),
+                few_modes: springs.few_modes(scene, hardest),
                 spring_length: spring.length(),
                 armature: springs.armature,
                 force_scale,

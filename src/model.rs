@@ -90,8 +90,8 @@ pub struct Model {
     pub(crate) memory: f64,
     /// Lowest natural frequency with the closed contacts as springs, Hz.
     pub frequency: f64,
-    /// Frequency of the highest mode of a spring file, and that up to which a blow excites the spring, if higher, Hz; and the file.
-    pub(crate) missed: Option<((f64, f64), StringParameter)>,
+    /// What a user should know of a spring file with too few modes.
+    pub(crate) few_modes: Option<Remark>,
     /// Length of the spring, if it is known, m.
     pub(crate) spring_length: Option<f64>,
     /// The directions in which slip is unstable.
@@ -156,7 +156,7 @@ impl Model {
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
         let of_scene = [self.bent_far(), self.friction_at_touch(), self.no_interruption()];
         let remarks = of_scene.into_iter().flatten().chain(unstable).chain(not_used);
-        remarks.chain(self.joined()).chain(self.damped()).chain(self.unusual()).chain(self.few_modes()).collect()
+        remarks.chain(self.joined()).chain(self.damped()).chain(self.unusual()).chain(self.few_modes.clone()).collect()
     }
 
     /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has
@@ -251,17 +251,7 @@ impl Model {
         })
     }
 
-    fn few_modes(&self) -> Option<Remark> {
-        let ((highest, reached), parameter) = self.missed?;
-        Some(Remark::FewModes {
-            name: parameter.variable().name,
-            file: self.scene.string(parameter).to_owned(),
-            highest,
-            reached,
-        })
-    }
-
-    /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is one.
+    /// Distance of both fixed contacts with the second displaced by so much (m); infinite where there is but one.
     pub(crate) fn room(&self, displacement: f64) -> f64 {
         let left = self.scene.second.gap - displacement - self.preload.indentation;
         self.roles.second.map_or(f64::INFINITY, |_| left)

@@ -22,6 +22,7 @@ use crate::beam::spring::{Basis, Spring};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues;
 use crate::contact::friction::tangential_share;
+use crate::error::Remark;
 use crate::math::simd::LANES;
 use crate::scene::Scene;
 use crate::variables::{PusherKind, StringParameter};
@@ -133,13 +134,18 @@ impl Springs {
         Resolution::new(basis, blows)
     }
 
-    /// Frequencies of the highest mode of a spring given by modes and up to which a blow excites it, where that is higher,
-    /// Hz; and the file of the spring.
-    pub fn missed(&self, blow: &Blow) -> Option<((f64, f64), StringParameter)> {
-        let moving = self.moving.missed(blow).map(|missed| (missed, StringParameter::BeamFile));
+    /// What a user should know of a spring given by modes that end below the frequencies that a blow excites.
+    pub fn few_modes(&self, scene: &Scene, blow: &Blow) -> Option<Remark> {
+        let remark = |parameter: StringParameter, (highest, reached): (f64, f64)| Remark::FewModes {
+            name: parameter.variable().name,
+            file: scene.string(parameter).to_owned(),
+            highest,
+            reached,
+        };
+        let moving = self.moving.missed(blow).map(|missed| remark(StringParameter::BeamFile, missed));
         moving.or_else(|| {
             let fixed = self.fixed.as_ref()?;
-            Some((fixed.spring.missed(&fixed.blow(blow))?, StringParameter::FixedFile))
+            Some(remark(StringParameter::FixedFile, fixed.spring.missed(&fixed.blow(blow))?))
         })
     }
 
