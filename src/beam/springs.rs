@@ -104,17 +104,15 @@ impl Springs {
     /// and of others on the moving spring; where `asked` is not 0 that number of each that there is.
     pub fn counts(&self, blows: &[Blow; 4], tolerance: f64, asked: usize) -> Counts {
         let [contact, parallel, ..] = blows;
-        let most =
-            |blows: &[Blow], count: &dyn Fn(&Blow) -> usize| blows.iter().fold(0, |most, blow| count(blow).max(most));
-        let (fixed, tongues) = (self.fixed.as_ref(), self.tongues.as_ref());
-        let at_fixed = |own: &Beside| {
-            let blows = [contact, parallel].map(|blow| own.blow(blow));
-            most(&blows, &|blow| own.spring.count(blow, tolerance))
+        let most = |spring: &Spring, blows: &[Blow]| {
+            let counts = blows.iter().map(|blow| spring.count(blow, tolerance));
+            counts.max().unwrap_or_default()
         };
+        let at_fixed = |own: &Beside| most(&own.spring, &[contact, parallel].map(|blow| own.blow(blow)));
         let needed = [
-            most(blows, &|blow| self.moving.count(blow, tolerance)),
-            fixed.map_or(0, at_fixed),
-            tongues.map_or(0, |tongues| most(blows, &|blow| tongues.spring.count(blow, tolerance))),
+            most(&self.moving, blows),
+            self.fixed.as_ref().map_or(0, at_fixed),
+            self.tongues.as_ref().map_or(0, |own| most(&own.spring, blows)),
         ];
         let counts = if asked == 0 { needed } else { self.of_each(asked) };
         within(counts, self.room())
