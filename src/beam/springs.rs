@@ -12,10 +12,12 @@
 //! so that they join the modes of the moving spring with the opposite sign at the contact. `support.displacement` moves the
 //! contact point as if its spring were rigid: the inertia of a clamp that moves is left out.
 
+use std::iter;
+
 use nalgebra::DVector;
 
 use crate::armature::Armature;
-use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
+use crate::beam::mode::{MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
 use crate::beam::spring::{Basis, Spring};
@@ -150,29 +152,22 @@ impl Springs {
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is
     /// that of the moving one. `None` at or above the buckling load.
     pub fn modes(&self, scene: &Scene, [moving, fixed, of_tongues]: Counts, axial_force: f64) -> Option<Basis> {
-        let mut basis = self.moving.modes(scene, moving, axial_force)?;
-        if self.fixed.is_some() || self.tongues.is_some() || self.armature.is_some() {
-            let at_fixed = |mode: &mut Mode| (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
-            let fixed = self.fixed.as_ref().and_then(|own| own.modes(1, fixed, 0.0, at_fixed));
-            let apart = |mode: &mut Mode| (mode.parallel, mode.participation) = (-mode.tip, 0.0);
-            let tongues = self.tongues.as_ref();
-            let tongues = tongues.and_then(|own| own.modes(2, of_tongues, axial_force, apart));
-            // Modes of others have no part in the shapes of the moving spring.
-            let size = basis.shapes.first().map_or(0, DVector::len);
-            let shapes = basis.shapes.drain(..).chain(std::iter::repeat(DVector::zeros(size)));
-            let own = basis.modes.drain(..).zip(basis.last.drain(..));
-            let others = fixed.into_iter().chain(tongues);
-            let others = others.flat_map(|other| other.modes.into_iter().zip(other.last));
-            let springs = own.chain(others).take(self.room());
-            let armature = self.armature.as_ref().map(Armature::mode);
-            let armature = armature.map(|mode| (mode, <[Last; SPRINGS]>::default()));
-            let mut all: Vec<_> = springs.chain(armature).zip(shapes).collect();
-            all.sort_by(|((a, _), _), ((b, _), _)| a.omega_squared.total_cmp(&b.omega_squared));
-            let (modes, shapes): (Vec<_>, _) = all.into_iter().unzip();
-            basis.shapes = shapes;
-            (basis.modes, basis.last) = modes.into_iter().unzip();
-        }
-        Some(basis)
+        let own = self.moving.modes(scene, moving, axial_force)?;
+        let at_fixed = |mode: &mut Mode| (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
+        let fixed = self.fixed.as_ref().and_then(|spring| spring.modes(1, fixed, 0.0, at_fixed));
+        let apart = |mode: &mut Mode| (mode.parallel, mode.participation) = (-mode.tip, 0.0);
+        let tongues = self.tongues.as_ref().and_then(|spring| spring.modes(2, of_tongues, axial_force, apart));
+        let others = fixed.into_iter().chain(tongues).flat_map(|other| other.modes.into_iter().zip(other.last));
+        let springs = own.modes.into_iter().zip(own.last).chain(others).take(self.room());
+        let armature = self.armature.as_ref().map(|armature| (armature.mode(), Default::default()));
+        // Modes of others have no part in the shapes of the moving spring.
+        let none = DVector::zeros(own.shapes.first().map_or(0, DVector::len));
+        let shapes = own.shapes.into_iter().chain(iter::repeat(none));
+        let mut all: Vec<_> = springs.chain(armature).zip(shapes).collect();
+        all.sort_by(|((a, _), _), ((b, _), _)| a.omega_squared.total_cmp(&b.omega_squared));
+        let (modes, shapes): (Vec<_>, _) = all.into_iter().unzip();
+        let (modes, last) = modes.into_iter().unzip();
+        Some(Basis { modes, shapes, space: own.space, last })
     }
 
     /// Most modes of all of them, beside that of the armature.
