@@ -193,8 +193,9 @@ impl Model {
     fn not_used(&self, spring: &SpringFile) -> impl Iterator<Item = Remark> {
         use RealParameter::{BeamDensity, BeamLength, BeamThickness, BeamWidth, BeamYoungsModulus};
         use RealParameter::{PusherPosition, TipMass, TipRotaryInertia};
-        let by_modes = matches!(spring.shape, Shape::Modes(_));
-        let shared = self.scene.fixed_spring.is_some();
+        let is_by_modes = |spring: &SpringFile| matches!(spring.shape, Shape::Modes(_));
+        let by_modes = is_by_modes(spring);
+        let shared = self.scene.fixed_spring.as_ref().is_some_and(|fixed| !is_by_modes(fixed));
         let sizes = [
             (true, &[BeamLength, BeamWidth, BeamThickness][..]),
             (by_modes && !shared, &[BeamYoungsModulus, BeamDensity]),

@@ -50,6 +50,8 @@ fn what_does_not_count_beside_a_file_is_told() {
         remarks.into_iter().map(name).collect()
     };
     assert_eq!(names(&scene), ["beam.density", "tip.mass", "pusher.position"]);
+    scene.fixed_spring.clone_from(&scene.spring);
+    assert_eq!(names(&scene), ["beam.density", "tip.mass", "pusher.position"]);
     // The fixed contact's may be of that material.
     let bar = Segments { segments: vec![segment(0.01, [4e-3; 2], [3e-4; 2])], ..Segments::default() };
     scene.fixed_spring = with(Scene::default(), Shape::Segments(bar)).spring;
