@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembly, Laws, Roles};
 use crate::beam::axial::Feedback;
-use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode::{MAX_MODES, Mode, Rayleigh};
 use crate::beam::mode_count::Blow;
 use crate::beam::spring::Basis;
 use crate::beam::springs::Springs;
@@ -48,7 +48,7 @@ impl Model {
         let blows = blows(scene, bending_force, &power, [parallel, second]);
         let asked = usize::try_from(scene.solver.modes).unwrap_or_default();
         let counts = springs.counts(&blows, tolerance, asked);
-        let Some(basis) = springs.modes(scene, counts, preload.axial_force) else {
+        let Some(basis) = springs.modes(counts, preload.axial_force) else {
             return Err(SceneError::Buckled {
                 name: RealParameter::BeamAxialForce.variable().name,
                 value: preload.axial_force,
@@ -68,8 +68,9 @@ impl Model {
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))
             .or_else(|| frequency((scene, &springs, &preload), laws, initial.coil));
         let generator = Generator::new(scene);
-        let is_linear = contact.opening != Opening::Parting && generator.is_harmonic() && is_linear(scene, &modes);
-        let closed_loop = || ClosedLoop::new(scene, (&modes, &resolution), contact, &generator).map(Box::new);
+        let is_linear =
+            contact.opening != Opening::Parting && generator.is_harmonic() && is_linear(scene, &modes, spring.damping);
+        let closed_loop = || ClosedLoop::new((&modes, &resolution), spring.damping, contact, &generator).map(Box::new);
         let closed_loop = is_linear.then(closed_loop).flatten();
         let at_contact = modes.iter().find(|mode| mode.tip != 0.0);
         let memory = at_contact.map_or(0.0, |mode| 1.0 / mode.omega_squared.sqrt());
@@ -129,7 +130,7 @@ fn frequency((scene, springs, preload): (&Scene, &Springs, &Preload), laws: Laws
     if scene.pushed_at().is_none() && springs.fixed.is_none() && laws.parallel.is_none() {
         return springs.moving.frequency(axial_force, stiffness);
     }
-    let modes = springs.many_modes(scene, axial_force)?;
+    let modes = springs.many_modes(axial_force)?;
     let parts = (scene, modes.as_slice(), preload);
     Assembly::new(parts, laws, springs.armature.as_ref()).frequency(&modes, coil)
 }
@@ -146,8 +147,6 @@ fn blows(scene: &Scene, bending_force: f64, power: &Law, [parallel, second]: [Op
     [Some(*power), parallel, second, pusher].map(|law| {
         let law = law.unwrap_or(*power);
         Blow {
-            mass_damping: scene.beam.mass_damping,
-            stiffness_damping: scene.beam.stiffness_damping,
             contact_stiffness: law.tangent_stiffness(force),
             contact_damping: law.damping,
             bare: scene.tip.mass == 0.0,
@@ -172,9 +171,8 @@ fn inertia(modes: &[Mode]) -> f64 {
 
 /// Whether nothing but the contact law can keep the scene from being linear, nothing within a step is requested, and all damping is
 /// Rayleigh's, as exact steps need it.
-fn is_linear(scene: &Scene, modes: &[Mode]) -> bool {
-    let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
-    let is_rayleigh = |mode: &Mode| mode.damping == alpha + beta * mode.omega_squared;
+fn is_linear(scene: &Scene, modes: &[Mode], damping: Rayleigh) -> bool {
+    let is_rayleigh = |mode: &Mode| mode.damping == damping.of(mode.omega_squared);
     scene.effects.axial_force != AxialForceKind::FromDeflection
         && scene.fixed_spring.is_none()
         && scene.pushed_at().is_none()

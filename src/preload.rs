@@ -18,7 +18,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::armature::AtRest;
-use crate::beam::springs::{Beside, Springs};
+use crate::beam::spring::Spring;
+use crate::beam::springs::Springs;
 use crate::contact::friction::tangential_share;
 use crate::contact::law::Law;
 use crate::error::SceneError;
@@ -120,7 +121,7 @@ struct Pressed<'a> {
     overtravel: f64,
     /// Deflection of that spring alone, m.
     fixed_alone: f64,
-    /// What it gives way per contact force, m/N.
+    /// What it gives way per contact force with the friction that comes with it, m/N.
     give: f64,
 }
 
@@ -131,18 +132,23 @@ impl<'a> Pressed<'a> {
         (law, parallel): (&'a Law, Option<&'a Law>),
         [support, _, pushed]: Ways,
     ) -> Self {
-        let fixed = springs.fixed.as_ref();
-        let fixed_alone = fixed.map_or(0.0, Beside::free_deflection);
+        let share = tangential_share(scene);
+        let (mut fixed_alone, mut give) = (0.0, 0.0);
+        if let Some(Spring { statics, .. }) = &springs.fixed {
+            fixed_alone = statics.gravity_compliance(0.0) * scene.environment.gravity;
+            let turned = share.map_or(0.0, |share| share * scene.tip.contact_height * statics.moment_compliance(0.0));
+            give = statics.tip_compliance(0.0) - turned;
+        }
         Self {
             scene,
             springs,
             law,
             parallel,
             pushed: scene.pushed_at().map(|_| pushed),
-            share: tangential_share(scene),
+            share,
             overtravel: scene.contact.overtravel + support + fixed_alone,
             fixed_alone,
-            give: fixed.map_or(0.0, Beside::compliance),
+            give,
         }
     }
 
@@ -284,7 +290,7 @@ impl<'a> Pressed<'a> {
         let statics = &self.springs.moving.statics;
         let rubbed = friction.coefficient * tip.contact_height;
         let alone = statics.tip_compliance(n);
-        let both = alone + self.springs.fixed.as_ref().map_or(0.0, Beside::tip_compliance);
+        let both = alone + self.springs.fixed.as_ref().map_or(0.0, |fixed| fixed.statics.tip_compliance(0.0));
         let limit = |free: f64, now: f64| {
             if now > 0.0 { f64::INFINITY } else { rubbed * free / (free - now) }
         };

@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::{Places, Space};
-use crate::beam::mode::{Last, MAX_MODES, Mode};
+use crate::beam::mode::{Last, MAX_MODES, Mode, Rayleigh};
 use crate::beam::mode_count::Blow;
 use crate::beam::section::Section;
 use crate::math::roots;
@@ -24,9 +24,6 @@ const DAMPED: f64 = 0.01;
 
 /// Share of the compliance below which a residual flexibility is what was not printed, 1.
 const ROUNDING: f64 = 1e-7;
-
-/// Rayleigh damping of the modes without damping of their own: alpha (1/s) and beta (s).
-pub type Rayleigh = (f64, f64);
 
 /// The modes of a file, frequency ascending.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,14 +67,14 @@ impl Given {
         if self.parallel_compliance > 0.0 { 2 } else { 1 }
     }
 
-    /// Up to `count` modes, the residual flexibility of each contact among them.
-    pub fn modes(&self, count: usize, (alpha, beta): Rayleigh) -> Vec<Mode> {
+    /// Up to `count` modes, the residual flexibility of each contact among them, with the damping of those that have none of their own.
+    pub fn modes(&self, count: usize, damping: Rayleigh) -> Vec<Mode> {
         let mode = |mode: &GivenMode| {
             let omega_squared = mode.omega_squared();
             let own = mode.damping.map(|ratio| 2.0 * ratio * omega_squared.sqrt());
             Mode {
                 omega_squared,
-                damping: own.unwrap_or(alpha + beta * omega_squared),
+                damping: own.unwrap_or(damping.of(omega_squared)),
                 tip: mode.contact,
                 participation: mode.participation,
                 rotation: mode.rotation.unwrap_or_default(),

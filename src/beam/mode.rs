@@ -24,12 +24,28 @@ pub type Last = [f64; LANES];
 /// Springs that a relay may have: the moving one, that of the fixed contact, and tongues against each other.
 pub const SPRINGS: usize = 3;
 
+/// Damping in proportion to mass and stiffness.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rayleigh {
+    /// alpha, 1/s.
+    pub alpha: f64,
+    /// beta, s.
+    pub beta: f64,
+}
+
+impl Rayleigh {
+    /// Damping of a mode (Machines 2025, 13(1), 52, eq. (22)), 1/s.
+    pub fn of(self, omega_squared: f64) -> f64 {
+        self.alpha + self.beta * omega_squared
+    }
+}
+
 /// One damped mode of a spring without contact, of modal mass 1 kg.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mode {
     /// omega_i^2, 1/s2.
     pub omega_squared: f64,
-    /// c_i, 1/s: alpha + beta omega_i^2 (Machines 2025, 13(1), 52, eq. (22)), or as a file or the armature has it.
+    /// c_i, 1/s: [`Rayleigh`]'s, or as a file or the armature has it.
     pub damping: f64,
     /// Displacement T_i that opens the contact, 1/sqrt(kg): of the tip, or of a fixed contact with the opposite sign.
     pub tip: f64,

@@ -13,6 +13,7 @@
 //! the root of that `x`: found on 70 random relays that open, and checked on others by `tests/promise.rs`. Where the spring
 //! rings on, the errors of as many blows add up as fall within its decay.
 
+use crate::beam::mode::Rayleigh;
 use crate::beam::section::Section;
 use crate::math::roots;
 use crate::math::simd::LANES;
@@ -43,13 +44,9 @@ const STEEP: f64 = 1.5;
 /// them than a communication step may.
 pub const MOST: usize = 64;
 
-/// Contact and damping as the number of modes depends on them.
+/// A contact as the number of modes depends on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Blow {
-    /// alpha of the spring, 1/s.
-    pub mass_damping: f64,
-    /// beta of the spring, s.
-    pub stiffness_damping: f64,
     /// Stiffness of the contact in the blow, N/m.
     pub contact_stiffness: f64,
     /// beta_c of the contact, s.
@@ -63,24 +60,24 @@ pub struct Blow {
 impl Blow {
     /// Number of modes for a tolerance: a multiple of what the vectors of a step hold, at least three times that.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive count, saturating")]
-    pub fn modes(&self, section: &Section, tolerance: f64) -> usize {
+    pub fn modes(&self, section: &Section, damping: Rayleigh, tolerance: f64) -> usize {
         let first = 3.516 * section.rate();
-        let damping = 0.5 * (self.mass_damping / first + self.stiffness_damping * first);
+        let ratio = 0.5 * (damping.alpha / first + damping.beta * first);
         // Undamped springs ring for ever, and no number of modes is right for that.
-        let ringing = if damping > 0.0 { RINGING / damping } else { 1.0 };
+        let ringing = if ratio > 0.0 { RINGING / ratio } else { 1.0 };
         let digits = FIRST_DIGITS + ringing.log10().clamp(0.0, 1.0) - tolerance.log10();
         let steepness = if self.steep { STEEP } else { 1.0 };
-        let per_digit = steepness * PER_DIGIT * self.wave_number(section).max(LEAST_WAVE_NUMBER).sqrt();
+        let per_digit = steepness * PER_DIGIT * self.wave_number(section, damping).max(LEAST_WAVE_NUMBER).sqrt();
         let count = digits * per_digit;
         (LANES * (count / LANES as f64).ceil().max(3.0) as usize).min(MOST)
     }
 
     /// The largest wave number `x` that the blow excites, 1 / L.
-    fn wave_number(&self, section: &Section) -> f64 {
+    fn wave_number(&self, section: &Section, damping: Rayleigh) -> f64 {
         let rate = section.rate();
         let stiffness = self.contact_stiffness * section.length.powi(3) / section.bending_stiffness;
         let mass = section.tip_mass / (section.mass_per_length * section.length);
-        let (beam, contact) = (self.stiffness_damping * rate, self.contact_damping * rate);
+        let (beam, contact) = (damping.beta * rate, self.contact_damping * rate);
         let wave = |s: f64| (s * s / (1.0 + beam * s)).sqrt().sqrt();
         let stiffer = |s: f64| stiffness * (1.0 + contact * s) - (1.0 + beam * s) * wave(s).powi(3) - mass * s * s;
         // In the logarithm of s, which may be anything. A rigid contact excites all modes.

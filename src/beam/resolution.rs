@@ -58,15 +58,15 @@ struct Part {
 }
 
 impl Resolution {
-    /// Of modes in a blow, with the damping of each spring (`blows`, in their order).
-    pub fn new(basis: &Basis, blows: [&Blow; SPRINGS]) -> Self {
-        let part = |(spring, blow): (usize, &Blow)| {
+    /// Of modes in a blow, with the damping beta of each spring, s.
+    pub fn new(basis: &Basis, blow: &Blow, dampings: [f64; SPRINGS]) -> Self {
+        let part = |(spring, damping): (usize, f64)| {
             let rows: Vec<_> = basis.last.iter().filter_map(|last| last.get(spring).copied()).collect();
             let bare = if blow.bare { BARE } else { 1.0 };
             let force = bare * OF_BOUND * greatest_force(&basis.modes, &rows, blow);
-            (force > 0.0).then(|| Part { rows, damping: blow.stiffness_damping / blow.contact_stiffness, force })
+            (force > 0.0).then(|| Part { rows, damping: damping / blow.contact_stiffness, force })
         };
-        let parts: Vec<_> = blows.into_iter().enumerate().filter_map(part).collect();
+        let parts: Vec<_> = dampings.into_iter().enumerate().filter_map(part).collect();
         Self { is_blind: basis.modes.len() == 1 && !parts.is_empty(), parts }
     }
 

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
 use crate::beam::given::Given;
-use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
+use crate::beam::mode::{Last, MAX_MODES, Mode, Rayleigh, SPRINGS};
 use crate::beam::mode_count::{Blow, MOST};
 use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
@@ -24,7 +24,11 @@ pub struct Spring {
     pub section: Section,
     /// Static compliance at the contact.
     pub statics: Statics,
+    /// Damping of its modes, if a file does not give them one of their own.
+    pub damping: Rayleigh,
     form: Form,
+    /// Whether friction turns it at its contact.
+    rubs: bool,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -57,31 +61,22 @@ const FREQUENCY_TERMS: usize = 32;
 impl Spring {
     /// The spring of a scene.
     pub fn new(scene: &Scene) -> Self {
-        match scene.spring.as_ref().map(|file| &file.shape) {
-            None if scene.pushed_at().is_some() => Self::of_segments(&uniform(&scene.beam), scene),
-            None => Self::uniform(&Section::new(scene)),
-            Some(Shape::Segments(segments)) => Self::of_segments(segments, scene),
+        let (section, statics, form) = match scene.spring.as_ref().map(|file| &file.shape) {
+            None if scene.pushed_at().is_some() => of_segments(&uniform(&scene.beam), scene),
+            None => {
+                let section = Section::new(scene);
+                (section, Statics::new(&section), Form::Uniform)
+            }
+            Some(Shape::Segments(segments)) => of_segments(segments, scene),
             Some(Shape::Modes(modes)) => {
                 let given = Given::new(modes);
                 let section = given.equivalent();
-                let space = given.space(&given.modes(MAX_MODES, (0.0, 0.0)));
-                Self { section, statics: Statics::of(&section, space), form: Form::Modes(given) }
+                let space = given.space(&given.modes(MAX_MODES, Rayleigh::default()));
+                (section, Statics::of(&section, space), Form::Modes(given))
             }
-        }
-    }
-
-    fn of_segments(segments: &Segments, scene: &Scene) -> Self {
-        let pieces = Pieces::new(segments, scene);
-        let (section, statics) = Shared::of(&KNOWN).statics.of(pieces.clone(), |pieces| {
-            let section = ritz::equivalent(pieces);
-            (section, Statics::of(&section, ritz::static_space(pieces, &section)))
-        });
-        Self { section, statics, form: Form::Segments(pieces) }
-    }
-
-    /// The spring of a uniform section.
-    pub fn uniform(section: &Section) -> Self {
-        Self { section: *section, statics: Statics::new(section), form: Form::Uniform }
+        };
+        let damping = Rayleigh { alpha: scene.beam.mass_damping, beta: scene.beam.stiffness_damping };
+        Self { section, statics, form, damping, rubs: scene.rubs() }
     }
 
     /// Axial force at a deflection of the tip (m), N.
@@ -115,9 +110,9 @@ impl Spring {
     /// Number of modes for a tolerance; all where they are given.
     pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
         match &self.form {
-            Form::Uniform => blow.modes(&self.section, tolerance),
+            Form::Uniform => blow.modes(&self.section, self.damping, tolerance),
             Form::Segments(pieces) => {
-                let count = blow.modes(&pieces.at_contact(), tolerance);
+                let count = blow.modes(&pieces.at_contact(), self.damping, tolerance);
                 let more = if pieces.are_uniform() { 0 } else { count * IRREGULAR / 4 };
                 (count + more).next_multiple_of(LANES).min(MOST)
             }
@@ -136,10 +131,9 @@ impl Spring {
     }
 
     /// The damped modes under an axial compression (N); `None` at or above the buckling load.
-    pub fn modes(&self, scene: &Scene, count: usize, axial_force: f64) -> Option<Basis> {
-        let (alpha, beta) = (scene.beam.mass_damping, scene.beam.stiffness_damping);
+    pub fn modes(&self, count: usize, axial_force: f64) -> Option<Basis> {
         if let Some(given) = self.given() {
-            let modes = given.modes(count, (alpha, beta));
+            let modes = given.modes(count, self.damping);
             return Some(Basis {
                 space: given.space(&modes),
                 shapes: Vec::new(),
@@ -147,14 +141,14 @@ impl Spring {
                 modes,
             });
         }
-        let asked = (self.form.clone(), self.section, (count, axial_force, scene.rubs()));
+        let asked = (self.form.clone(), self.section, (count, axial_force, self.rubs));
         let (undamped, space) = Shared::of(&KNOWN).modes.of(asked, |(form, section, (count, axial_force, rubs))| {
             let space = form.space(section, *count, *axial_force, *rubs)?;
             Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
         })?;
         let (mut modes, shapes): (Vec<Mode>, Vec<DVector<f64>>) = undamped.into_iter().unzip();
         for mode in &mut modes {
-            mode.damping = alpha + beta * mode.omega_squared;
+            mode.damping = self.damping.of(mode.omega_squared);
         }
         let root = self.section.halves().1.sqrt();
         let last = shapes.iter().map(|shape| last_of(shape).map(|entry| root * entry));
@@ -184,7 +178,7 @@ impl Form {
         match self {
             Self::Uniform => Some(Space::new(count)),
             Self::Segments(pieces) => ritz::dynamic_space(pieces, section, count, axial_force, rubs),
-            Self::Modes(given) => Some(given.space(&given.modes(MAX_MODES, (0.0, 0.0)))),
+            Self::Modes(given) => Some(given.space(&given.modes(MAX_MODES, Rayleigh::default()))),
         }
     }
 }
@@ -207,6 +201,16 @@ type Asked = (usize, f64, bool);
 type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
 pub static KNOWN: Home<Known> = Home::new(None);
+
+/// A spring of segments, with its equivalent section and its statics.
+fn of_segments(segments: &Segments, scene: &Scene) -> (Section, Statics, Form) {
+    let pieces = Pieces::new(segments, scene);
+    let (section, statics) = Shared::of(&KNOWN).statics.of(pieces.clone(), |pieces| {
+        let section = ritz::equivalent(pieces);
+        (section, Statics::of(&section, ritz::static_space(pieces, &section)))
+    });
+    (section, statics, Form::Segments(pieces))
+}
 
 /// The uniform section as a spring of one segment.
 fn uniform(beam: &Beam) -> Segments {

@@ -17,13 +17,12 @@ use std::iter;
 use nalgebra::DVector;
 
 use crate::armature::Armature;
-use crate::beam::mode::{MAX_MODES, Mode, SPRINGS};
+use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
 use crate::beam::spring::{Basis, Spring};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues;
-use crate::contact::friction::tangential_share;
 use crate::error::Remark;
 use crate::math::simd::LANES;
 use crate::scene::Scene;
@@ -37,9 +36,9 @@ const FREQUENCY_MODES: usize = 32;
 pub struct Springs {
     pub moving: Spring,
     /// That of the fixed contact, if it is not rigid.
-    pub fixed: Option<Beside>,
+    pub fixed: Option<Spring>,
     /// The tongues of the moving one as they move against each other, if it forks.
-    pub tongues: Option<Beside>,
+    pub tongues: Option<Spring>,
     /// The armature, which joins their modes.
     pub armature: Option<Armature>,
 }
@@ -69,17 +68,22 @@ impl Springs {
     pub fn new(scene: &Scene) -> Self {
         Self {
             moving: Spring::new(scene),
-            fixed: fixed(scene).map(Beside::new),
-            tongues: tongues::scene(scene).map(Beside::new),
+            fixed: fixed(scene).map(|own| Spring::new(&own)),
+            tongues: tongues::scene(scene).map(|own| Spring::new(&own)),
             armature: Armature::new(scene),
         }
+    }
+
+    /// The springs that there are, in the order of [`Counts`].
+    fn each(&self) -> [Option<&Spring>; SPRINGS] {
+        [Some(&self.moving), self.fixed.as_ref(), self.tongues.as_ref()]
     }
 
     /// Static stiffness of both at the contact, N/m.
     pub fn stiffness(&self) -> f64 {
         let moving = self.moving.section.tip_stiffness();
         match &self.fixed {
-            Some(fixed) => 1.0 / (1.0 / moving + fixed.tip_compliance()),
+            Some(fixed) => 1.0 / (1.0 / moving + fixed.statics.tip_compliance(0.0)),
             None => moving,
         }
     }
@@ -92,7 +96,7 @@ impl Springs {
     /// What tongues add to that of the spring as a whole, m/N.
     fn tongue_compliance(&self, axial_force: f64) -> f64 {
         let tongues = self.tongues.as_ref();
-        tongues.map_or(0.0, |tongues| tongues.spring.statics.tip_compliance(axial_force))
+        tongues.map_or(0.0, |tongues| tongues.statics.tip_compliance(axial_force))
     }
 
     /// Deflection of the moving spring at a parallel contact per load, under an axial compression of it (N).
@@ -105,33 +109,26 @@ impl Springs {
     /// Numbers of modes for a tolerance in blows of the contact, of a parallel one, which presses the fixed contact's spring too,
     /// and of others on the moving spring; where `asked` is not 0 that number of each that there is.
     pub fn counts(&self, blows: &[Blow; 4], tolerance: f64, asked: usize) -> Counts {
-        let [contact, parallel, ..] = blows;
-        let most = |spring: &Spring, blows: &[Blow]| {
-            let counts = blows.iter().map(|blow| spring.count(blow, tolerance));
+        let (at_fixed, _) = blows.split_at(2);
+        let most = |spring: Option<&Spring>, blows: &[Blow]| {
+            let counts = blows.iter().filter_map(|blow| Some(spring?.count(blow, tolerance)));
             counts.max().unwrap_or_default()
         };
-        let at_fixed = |own: &Beside| most(&own.spring, &[contact, parallel].map(|blow| own.blow(blow)));
-        let needed = [
-            most(&self.moving, blows),
-            self.fixed.as_ref().map_or(0, at_fixed),
-            self.tongues.as_ref().map_or(0, |own| most(&own.spring, blows)),
-        ];
+        let [moving, fixed, tongues] = self.each();
+        let needed = [most(moving, blows), most(fixed, at_fixed), most(tongues, blows)];
         let counts = if asked == 0 { needed } else { self.of_each(asked) };
         within(counts, self.room())
     }
 
     /// So many modes of each spring that there is, beside its residual flexibilities.
     fn of_each(&self, count: usize) -> Counts {
-        let of = |spring: &Spring| count + spring.residuals();
-        let beside = |own: &Option<Beside>| own.as_ref().map_or(0, |own| of(&own.spring));
-        [of(&self.moving), beside(&self.fixed), beside(&self.tongues)]
+        self.each().map(|spring| spring.map_or(0, |spring| count + spring.residuals()))
     }
 
     /// What modes left out do in a blow of a contact at the tip.
-    pub fn resolution(&self, basis: &Basis, own: &Blow) -> Resolution {
-        let fixed = self.fixed.as_ref().map(|fixed| fixed.blow(own));
-        let blows = [own, fixed.as_ref().unwrap_or(own), own];
-        Resolution::new(basis, blows)
+    pub fn resolution(&self, basis: &Basis, blow: &Blow) -> Resolution {
+        let dampings = self.each().map(|spring| spring.map_or(0.0, |spring| spring.damping.beta));
+        Resolution::new(basis, blow, dampings)
     }
 
     /// What a user should know of a spring given by modes that end below the frequencies that a blow excites.
@@ -143,22 +140,21 @@ impl Springs {
             reached,
         };
         let moving = self.moving.missed(blow).map(|missed| remark(StringParameter::BeamFile, missed));
-        moving.or_else(|| {
-            let fixed = self.fixed.as_ref()?;
-            Some(remark(StringParameter::FixedFile, fixed.spring.missed(&fixed.blow(blow))?))
-        })
+        let fixed = || Some(remark(StringParameter::FixedFile, self.fixed.as_ref()?.missed(blow)?));
+        moving.or_else(fixed)
     }
 
     /// The damped modes of both, frequency ascending, under an axial compression of the moving one (N); the rest of the basis is
     /// that of the moving one. `None` at or above the buckling load.
-    pub fn modes(&self, scene: &Scene, [moving, fixed, of_tongues]: Counts, axial_force: f64) -> Option<Basis> {
-        let own = self.moving.modes(scene, moving, axial_force)?;
-        let at_fixed = |mode: &mut Mode| (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
-        let fixed = self.fixed.as_ref().and_then(|spring| spring.modes(1, fixed, 0.0, at_fixed));
-        let apart = |mode: &mut Mode| (mode.parallel, mode.participation) = (-mode.tip, 0.0);
-        let tongues = self.tongues.as_ref().and_then(|spring| spring.modes(2, of_tongues, axial_force, apart));
-        let others = fixed.into_iter().chain(tongues).flat_map(|other| other.modes.into_iter().zip(other.last));
-        let springs = own.modes.into_iter().zip(own.last).chain(others).take(self.room());
+    pub fn modes(&self, [moving, fixed, tongues]: Counts, axial_force: f64) -> Option<Basis> {
+        let own = self.moving.modes(moving, axial_force)?;
+        let fixed = beside(self.fixed.as_ref(), (1, fixed), 0.0, |mode| {
+            (mode.tip, mode.parallel, mode.fixed) = (-mode.tip, -mode.tip, mode.tip);
+        });
+        let tongues = beside(self.tongues.as_ref(), (2, tongues), axial_force, |mode| {
+            (mode.parallel, mode.participation) = (-mode.tip, 0.0);
+        });
+        let springs = own.modes.into_iter().zip(own.last).chain(fixed).chain(tongues).take(self.room());
         let armature = self.armature.as_ref().map(|armature| (armature.mode(), Default::default()));
         // Modes of others have no part in the shapes of the moving spring.
         let none = DVector::zeros(own.shapes.first().map_or(0, DVector::len));
@@ -176,9 +172,9 @@ impl Springs {
     }
 
     /// Modes for the lowest frequency of all.
-    pub fn many_modes(&self, scene: &Scene, axial_force: f64) -> Option<Vec<Mode>> {
+    pub fn many_modes(&self, axial_force: f64) -> Option<Vec<Mode>> {
         let counts = within(self.of_each(FREQUENCY_MODES), self.room());
-        self.modes(scene, counts, axial_force).map(|basis| basis.modes)
+        self.modes(counts, axial_force).map(|basis| basis.modes)
     }
 }
 
@@ -194,52 +190,19 @@ fn fixed(scene: &Scene) -> Option<Scene> {
     Some(own)
 }
 
-/// A spring beside the moving one, with a scene in which it takes the place of that.
-#[derive(Clone, Debug)]
-pub struct Beside {
-    scene: Scene,
-    spring: Spring,
-}
-
-impl Beside {
-    fn new(scene: Scene) -> Self {
-        let spring = Spring::new(&scene);
-        Self { scene, spring }
-    }
-
-    /// Deflection that opens the contact, per contact force with the share of friction that comes with it, m/N.
-    pub fn compliance(&self) -> f64 {
-        let statics = &self.spring.statics;
-        let turned = tangential_share(&self.scene)
-            .map_or(0.0, |share| share * self.scene.tip.contact_height * statics.moment_compliance(0.0));
-        self.tip_compliance() - turned
-    }
-
-    /// The same without friction, m/N.
-    pub fn tip_compliance(&self) -> f64 {
-        self.spring.statics.tip_compliance(0.0)
-    }
-
-    /// Deflection without contact, m: zero without gravity.
-    pub fn free_deflection(&self) -> f64 {
-        self.spring.statics.gravity_compliance(0.0) * self.scene.environment.gravity
-    }
-
-    /// A blow of the contact with the damping of this spring.
-    fn blow(&self, blow: &Blow) -> Blow {
-        Blow {
-            mass_damping: self.scene.beam.mass_damping,
-            stiffness_damping: self.scene.beam.stiffness_damping,
-            ..*blow
-        }
-    }
-
-    /// Its modes under an axial compression (N), each changed to what it does at the contacts, as those of the spring with this index;
-    /// `None` at or above the buckling load.
-    fn modes(&self, index: usize, count: usize, axial_force: f64, at_contacts: impl Fn(&mut Mode)) -> Option<Basis> {
-        let mut basis = self.spring.modes(&self.scene, count, axial_force)?;
-        basis.modes.iter_mut().for_each(at_contacts);
-        basis.last.iter_mut().for_each(|last| last.swap(0, index));
-        Some(basis)
-    }
+/// The modes under an axial compression (N) of a spring beside the moving one, with their coefficients in its last functions: each
+/// changed to what it does at the contacts, as those of the spring with this index.
+fn beside(
+    spring: Option<&Spring>,
+    (index, count): (usize, usize),
+    axial_force: f64,
+    at_contacts: fn(&mut Mode),
+) -> impl Iterator<Item = (Mode, [Last; SPRINGS])> {
+    let basis = spring.and_then(|spring| spring.modes(count, axial_force));
+    let modes = basis.into_iter().flat_map(|basis| basis.modes.into_iter().zip(basis.last));
+    modes.map(move |(mut mode, mut last)| {
+        at_contacts(&mut mode);
+        last.swap(0, index);
+        (mode, last)
+    })
 }

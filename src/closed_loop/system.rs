@@ -11,7 +11,7 @@
 
 use bytemuck::zeroed_box;
 
-use crate::beam::mode::{MAX_MODES, Mode};
+use crate::beam::mode::{MAX_MODES, Mode, Rayleigh};
 use crate::beam::resolution::Resolution;
 use crate::closed_loop::eigenvectors::EigenPair;
 use crate::closed_loop::oscillator::{Coordinates, Oscillator, set};
@@ -21,7 +21,6 @@ use crate::contact::law::Law;
 use crate::excitation::generator::Generator;
 use crate::math::free_motion::FreeMotion;
 use crate::math::simd::{Arithmetic, Simd, compiled_for};
-use crate::scene::Scene;
 
 /// Largest error of transforming the motion of a single mode to the oscillators and back, relative to its amplitude. It
 /// is largest for high modes, which move least: the contact force is then accurate to some 1e-13 of its scale.
@@ -87,18 +86,18 @@ impl Columns {
 }
 
 impl ClosedLoop {
-    /// From the modes and the contact of the scene; `None` if the eigenvectors are too close to be separated
+    /// From the modes, their damping and the contact; `None` if the eigenvectors are too close to be separated
     /// accurately.
     pub fn new(
-        scene: &Scene,
         (modes, resolution): (&[Mode], &Resolution),
+        damping: Rayleigh,
         contact: Law,
         generator: &Generator,
     ) -> Option<Self> {
         let problem = Problem {
             modes: modes.iter().map(|mode| (mode.omega_squared, mode.tip)).collect(),
-            mass_damping: scene.beam.mass_damping,
-            stiffness_damping: scene.beam.stiffness_damping,
+            mass_damping: damping.alpha,
+            stiffness_damping: damping.beta,
             contact_stiffness: contact.coefficient,
             contact_damping: contact.damping,
         };

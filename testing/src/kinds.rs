@@ -142,7 +142,7 @@ pub fn with_modes(number: u64) -> Relay {
     let rng = &mut Rng::with_seed(!number);
     let scene = &mut relay.scene;
     scene.effects.axial_force = AxialForceKind::None;
-    let basis = Spring::new(scene).modes(scene, rng.usize(4..=24), 0.0);
+    let basis = Spring::new(scene).modes(rng.usize(4..=24), 0.0);
     let modes = basis.expect("a spring without axial force").modes;
     let own = rng.bool();
     let given = modes.iter().take(rng.usize(2..=modes.len())).map(|own_mode| GivenMode {

@@ -8,7 +8,7 @@ pub mod reference;
 use std::f64::consts::TAU;
 
 use reference::{Stretch, frequencies};
-use relay_contact::reference::{Mode, Model, Section, Spring, frequencies as uniform_frequencies};
+use relay_contact::reference::{Mode, Model, Section, Spring, Statics, frequencies as uniform_frequencies};
 use relay_contact::scene::Scene;
 use relay_contact::scene::spring::{PointMass, Segment, Segments, Shape};
 use relay_contact::variables::AxialForceKind;
@@ -39,7 +39,7 @@ fn section(scene: &Scene, width: f64, thickness: f64) -> (f64, f64) {
 
 /// The angular frequencies of the free spring, rad/s.
 fn found(scene: &Scene) -> Vec<f64> {
-    let basis = Spring::new(scene).modes(scene, 40, 0.0).unwrap();
+    let basis = Spring::new(scene).modes(40, 0.0).unwrap();
     basis.modes.iter().map(|mode| mode.omega_squared.sqrt()).collect()
 }
 
@@ -195,12 +195,12 @@ fn the_uniform_column_of_segments_follows_the_closed_form_under_axial_force() {
     let plain = Section::new(&scene);
     let spring = Spring::new(&cut(&scene, &[0.4, 0.6]));
     let buckling_load = (0.25 * TAU / plain.length).powi(2) * plain.bending_stiffness;
-    close("buckling load, N", Spring::uniform(&plain).statics.buckling_load(), buckling_load, 1e-10);
+    close("buckling load, N", Statics::new(&plain).buckling_load(), buckling_load, 1e-10);
     for share in [-3.0, 0.3, 0.9, 0.99] {
         let force = share * buckling_load;
         let exact = uniform_frequencies(&plain, force, 1e6, 1)[0];
         close(share, spring.frequency(force, 1e6).unwrap(), exact, 1e-9);
-        let exact = Spring::uniform(&plain).statics.tip_compliance(force);
+        let exact = Statics::new(&plain).tip_compliance(force);
         close(share, spring.statics.tip_compliance(force), exact, 1e-9);
     }
     assert!(spring.frequency(1.001 * buckling_load, 0.0).is_none());
