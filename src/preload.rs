@@ -115,8 +115,8 @@ struct Pressed<'a> {
     parallel: Option<&'a Law>,
     /// Where the pusher would touch the unloaded spring, towards the contact, m.
     pushed: Option<f64>,
-    /// Friction force per contact force, 1.
-    share: Option<f64>,
+    /// Moment of the friction force per contact force, m; 0 without friction.
+    lever: f64,
     /// Overtravel with what inputs and the deflection of the fixed contact's spring alone add, m.
     overtravel: f64,
     /// Deflection of that spring alone, m.
@@ -132,12 +132,11 @@ impl<'a> Pressed<'a> {
         (law, parallel): (&'a Law, Option<&'a Law>),
         [support, _, pushed]: Ways,
     ) -> Self {
-        let share = tangential_share(scene);
+        let lever = tangential_share(scene).map_or(0.0, |share| share * scene.tip.contact_height);
         let (mut fixed_alone, mut give) = (0.0, 0.0);
         if let Some(Spring { statics, .. }) = &springs.fixed {
             fixed_alone = statics.gravity_compliance(0.0) * scene.environment.gravity;
-            let turned = share.map_or(0.0, |share| share * scene.tip.contact_height * statics.moment_compliance(0.0));
-            give = statics.tip_compliance(0.0) - turned;
+            give = statics.tip_compliance(0.0) - lever * statics.moment_compliance(0.0);
         }
         Self {
             scene,
@@ -145,7 +144,7 @@ impl<'a> Pressed<'a> {
             law,
             parallel,
             pushed: scene.pushed_at().map(|_| pushed),
-            share,
+            lever,
             overtravel: scene.contact.overtravel + support + fixed_alone,
             fixed_alone,
             give,
@@ -171,10 +170,7 @@ impl<'a> Pressed<'a> {
 
     /// Deflection of the tip per contact force with the friction that comes with it, m/N.
     fn compliance(&self, n: f64) -> f64 {
-        let by_force = self.springs.tip_compliance(n);
-        self.share.map_or(by_force, |share| {
-            by_force + share * self.scene.tip.contact_height * self.springs.moving.statics.moment_compliance(n)
-        })
+        self.springs.tip_compliance(n) + self.lever * self.springs.moving.statics.moment_compliance(n)
     }
 
     /// Force of the pusher (N) and its overlap with the spring (m), 0 without one, under the forces of both contacts and an axial
@@ -183,10 +179,9 @@ impl<'a> Pressed<'a> {
         let Some(place) = self.pushed else { return (0.0, 0.0) };
         let by = self.springs.moving.statics.at_pusher(n);
         let by_parallel = self.parallel.map_or(0.0, |_| self.springs.at_parallel(n).pushed * parallel);
-        // Friction turns the spring as it presses the contact.
-        let lever = self.share.map_or(0.0, |share| share * self.scene.tip.contact_height);
-        // Of the spring without the pusher, which is where it pushes.
-        let spring = (by.across + lever * by.turning) * force + by_parallel + by.sag * self.scene.environment.gravity;
+        // Of the spring without the pusher, which is where it pushes; friction turns it as it presses the contact.
+        let spring =
+            (by.across + self.lever * by.turning) * force + by_parallel + by.sag * self.scene.environment.gravity;
         let alone = place + spring;
         if alone <= 0.0 {
             return (0.0, alone);
@@ -280,7 +275,7 @@ impl<'a> Pressed<'a> {
     /// buckled under that.
     fn check_jam(&self, n: f64) -> Result<(), SceneError> {
         let compliance = self.compliance(n);
-        if self.share.is_none() || compliance.min(compliance + self.give) > 0.0 {
+        if !self.scene.rubs() || compliance.min(compliance + self.give) > 0.0 {
             return Ok(());
         }
         // A buckled spring gives way too, at any friction.
