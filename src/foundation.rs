@@ -4,7 +4,6 @@ use crate::assembly::{Assembly, Laws, Roles};
 use crate::beam::axial::Feedback;
 use crate::beam::mode::{MAX_MODES, Mode, Rayleigh};
 use crate::beam::mode_count::Blow;
-use crate::beam::spring::Basis;
 use crate::beam::springs::Springs;
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::law::{Law, Opening};
@@ -59,10 +58,10 @@ impl Model {
         let [own, other, ..] = &blows;
         let hardest = if other.contact_stiffness > own.contact_stiffness { other } else { own };
         let resolution = springs.resolution(&basis, hardest);
-        let Basis { modes, shapes, space, .. } = basis;
         let axial = (scene.effects.axial_force == AxialForceKind::FromDeflection)
-            .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &space, &modes, &shapes))
+            .then(|| Feedback::new(&section, &preload, scene.environment.gravity, &basis))
             .map(Box::new);
+        let modes = basis.modes;
         let frequency = axial
             .as_ref()
             .and_then(|axial| axial.frequency(&modes, preload.contact_stiffness))

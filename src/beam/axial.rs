@@ -19,9 +19,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::beam::galerkin::Space;
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState};
 use crate::beam::section::Section;
+use crate::beam::spring::Basis;
 use crate::preload::Preload;
 
 /// The axial force that follows the deflection at all times, as a load on the modes.
@@ -37,15 +37,9 @@ pub struct Feedback {
 }
 
 impl Feedback {
-    /// For the modes about the preload, with their shapes in `space`, under the constant acceleration `gravity` (m/s2).
-    pub fn new(
-        section: &Section,
-        preload: &Preload,
-        gravity: f64,
-        space: &Space,
-        modes: &[Mode],
-        shapes: &[DVector<f64>],
-    ) -> Self {
+    /// For the modes about the preload, under the constant acceleration `gravity` (m/s2).
+    pub fn new(section: &Section, preload: &Preload, gravity: f64, basis: &Basis) -> Self {
+        let Basis { modes, shapes, space, .. } = basis;
         let product = |a, b| space.slope_product(section.length, a, b);
         let row = |a| std::array::from_fn(|i| shapes.get(i).map_or(0.0, |b| product(a, b)));
         let geometric: Vec<Modal> = shapes.iter().map(row).collect();
