@@ -3,7 +3,7 @@
 
 pub use crate::beam::characteristic::frequencies;
 pub use crate::beam::galerkin::Space;
-pub use crate::beam::mode::{MAX_MODES, Mode, ModeState};
+pub use crate::beam::mode::{MAX_MODES, Mode, ModeState, Rayleigh};
 pub use crate::beam::section::Section;
 pub use crate::beam::spring::{Basis, Spring};
 pub use crate::beam::statics::{Statics, axial_force_from_deflection};
