@@ -61,7 +61,7 @@ fn within([moving, fixed, tongues]: Counts, room: usize) -> Counts {
         (0, _) => 0,
         _ => share(fixed, room, others).clamp(LANES, room - LANES),
     };
-    [moving, fixed.min(room), if tongues == 0 { 0 } else { room - fixed }]
+    [moving, fixed, if tongues == 0 { 0 } else { room - fixed }]
 }
 
 impl Springs {
