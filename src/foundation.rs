@@ -35,7 +35,7 @@ impl Model {
         scene.validate()?;
         scene.check_combinations()?;
         let springs = Springs::new(scene);
-        let (spring, section) = (&springs.moving, springs.moving.section);
+        let (spring, section) = (&springs.moving, springs.moving.statics.section);
         let power = Law::of(scene);
         let (parallel, second) = (Law::of_parallel(scene), Law::of_second(scene));
         let preload = Preload::new(scene, &springs, (&power, parallel.as_ref()), initial)?;

@@ -20,9 +20,7 @@ use crate::variables::AxialForceKind;
 /// A spring with its rivet.
 #[derive(Clone, Debug)]
 pub struct Spring {
-    /// The uniform section; for another spring that which deflects and turns as much at its contact under a force there.
-    pub section: Section,
-    /// Static compliance at the contact.
+    /// Its section, and its static compliance at the contact.
     pub statics: Statics,
     /// Damping of its modes, if a file does not give them one of their own.
     pub damping: Rayleigh,
@@ -61,22 +59,18 @@ const FREQUENCY_TERMS: usize = 32;
 impl Spring {
     /// The spring of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let (section, statics, form) = match scene.spring.as_ref().map(|file| &file.shape) {
+        let (statics, form) = match scene.spring.as_ref().map(|file| &file.shape) {
             None if scene.pushed_at().is_some() => of_segments(&uniform(&scene.beam), scene),
-            None => {
-                let section = Section::new(scene);
-                (section, Statics::new(&section), Form::Uniform)
-            }
+            None => (Statics::new(&Section::new(scene)), Form::Uniform),
             Some(Shape::Segments(segments)) => of_segments(segments, scene),
             Some(Shape::Modes(modes)) => {
                 let given = Given::new(modes);
-                let section = given.equivalent();
                 let space = given.space(&given.modes(MAX_MODES, Rayleigh::default()));
-                (section, Statics::of(&section, space), Form::Modes(given))
+                (Statics::of(&given.equivalent(), space), Form::Modes(given))
             }
         };
         let damping = Rayleigh { alpha: scene.beam.mass_damping, beta: scene.beam.stiffness_damping };
-        Self { section, statics, form, damping, rubs: scene.rubs() }
+        Self { statics, form, damping, rubs: scene.rubs() }
     }
 
     /// Axial force at a deflection of the tip (m), N.
@@ -88,7 +82,7 @@ impl Spring {
             AxialForceKind::None => 0.0,
             AxialForceKind::Prescribed => scene.beam.axial_force,
             AxialForceKind::FromPreload | AxialForceKind::FromDeflection => {
-                axial_force_from_deflection(&self.section, y)
+                axial_force_from_deflection(&self.statics.section, y)
             }
         }
     }
@@ -104,13 +98,13 @@ impl Spring {
     /// Length, of a spring of segments that of the uniform one with the same deflection and slope under a load at the
     /// contact, m; modes do not tell it.
     pub fn length(&self) -> Option<f64> {
-        self.given().is_none().then_some(self.section.length)
+        self.given().is_none().then_some(self.statics.section.length)
     }
 
     /// Number of modes for a tolerance; all where they are given.
     pub fn count(&self, blow: &Blow, tolerance: f64) -> usize {
         match &self.form {
-            Form::Uniform => blow.modes(&self.section, self.damping, tolerance),
+            Form::Uniform => blow.modes(&self.statics.section, self.damping, tolerance),
             Form::Segments(pieces) => {
                 let count = blow.modes(&pieces.at_contact(), self.damping, tolerance);
                 let more = if pieces.are_uniform() { 0 } else { count * IRREGULAR / 4 };
@@ -141,7 +135,7 @@ impl Spring {
                 modes,
             });
         }
-        let asked = (self.form.clone(), self.section, (count, axial_force, self.rubs));
+        let asked = (self.form.clone(), self.statics.section, (count, axial_force, self.rubs));
         let (undamped, space) = Shared::of(&KNOWN).modes.of(asked, |(form, section, (count, axial_force, rubs))| {
             let space = form.space(section, *count, *axial_force, *rubs)?;
             Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
@@ -150,7 +144,7 @@ impl Spring {
         for mode in &mut modes {
             mode.damping = self.damping.of(mode.omega_squared);
         }
-        let root = self.section.halves().1.sqrt();
+        let root = self.statics.section.halves().1.sqrt();
         let last = shapes.iter().map(|shape| last_of(shape).map(|entry| root * entry));
         Some(Basis { last: last.map(|last| [last, NONE, NONE]).collect(), modes, shapes, space })
     }
@@ -158,7 +152,7 @@ impl Spring {
     /// Lowest angular frequency under an axial compression (N) with an elastic support of `stiffness` (N/m) at the tip,
     /// rad/s.
     pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
-        let asked = (self.form.clone(), self.section, (axial_force, stiffness));
+        let asked = (self.form.clone(), self.statics.section, (axial_force, stiffness));
         Shared::of(&KNOWN).frequencies.of(asked, |(form, section, (axial_force, stiffness))| {
             if let Form::Uniform = form {
                 let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
@@ -186,8 +180,8 @@ impl Form {
 /// What was found of springs, for all simulations of a process.
 #[derive(Debug, Default)]
 pub struct Known {
-    /// The equivalent section and its statics.
-    statics: Found<Pieces, (Section, Statics)>,
+    /// Statics, with the equivalent section.
+    statics: Found<Pieces, Statics>,
     /// Modes without damping.
     modes: Found<(Form, Section, Asked), Option<Undamped>>,
     /// Lowest angular frequency (rad/s) under an axial compression (N) on an elastic support (N/m).
@@ -202,14 +196,14 @@ type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
 pub static KNOWN: Home<Known> = Home::new(None);
 
-/// A spring of segments, with its equivalent section and its statics.
-fn of_segments(segments: &Segments, scene: &Scene) -> (Section, Statics, Form) {
+/// The statics of a spring of segments, and what it is made of.
+fn of_segments(segments: &Segments, scene: &Scene) -> (Statics, Form) {
     let pieces = Pieces::new(segments, scene);
-    let (section, statics) = Shared::of(&KNOWN).statics.of(pieces.clone(), |pieces| {
+    let statics = Shared::of(&KNOWN).statics.of(pieces.clone(), |pieces| {
         let section = ritz::equivalent(pieces);
-        (section, Statics::of(&section, ritz::static_space(pieces, &section)))
+        Statics::of(&section, ritz::static_space(pieces, &section))
     });
-    (section, statics, Form::Segments(pieces))
+    (statics, Form::Segments(pieces))
 }
 
 /// The uniform section as a spring of one segment.

@@ -81,7 +81,7 @@ impl Springs {
 
     /// Static stiffness of both at the contact, N/m.
     pub fn stiffness(&self) -> f64 {
-        let moving = self.moving.section.tip_stiffness();
+        let moving = self.moving.statics.section.tip_stiffness();
         match &self.fixed {
             Some(fixed) => 1.0 / (1.0 / moving + fixed.statics.tip_compliance(0.0)),
             None => moving,

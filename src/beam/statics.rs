@@ -17,7 +17,8 @@ const TERMS: usize = 20;
 /// modes, `nu = N L^2 / (4 E I)`.
 #[derive(Clone, Debug)]
 pub struct Statics {
-    section: Section,
+    /// The uniform section; for another spring that which deflects and turns as much at its contact under a force there.
+    pub section: Section,
     terms: Vec<Term>,
 }
 

@@ -80,7 +80,7 @@ impl Relay {
         let shape = Shape::Segments(segments(&mut Rng::with_seed(number), scene));
         scene.spring = spring_file(&format!("random spring {number}"), shape);
         let spring = Spring::new(scene);
-        let softer = stiffness / spring.section.tip_stiffness();
+        let softer = stiffness / spring.statics.section.tip_stiffness();
         scene.contact.overtravel = (scene.contact.overtravel * softer).clamp(-0.01, 0.01);
         scene.beam.axial_force *= 0.5 * spring.statics.buckling_load() / (stiffness * scene.beam.length * 0.822);
         relay
