@@ -28,7 +28,7 @@ fn run() -> Result<(), Box<dyn Error>> {
         scene.set(name, value)?;
     }
 
-    let start = scene.inputs_over(0.0, scene.communication_step)?;
+    let start = scene.first_inputs()?;
     let mut contact = Simulation::new(&scene.scene, &start, 0.0)?;
     let mut outputs = vec![0.0; scene.outputs.len()];
     let begun = Instant::now();

@@ -58,7 +58,7 @@ pub fn run_many(
 
 /// Runs a scene; returns its outputs at the stop.
 fn run(scene: &SceneFile) -> Result<Vec<f64>, RunError> {
-    let start = scene.inputs_over(0.0, scene.communication_step)?;
+    let start = scene.first_inputs()?;
     let mut simulation = Simulation::new(&scene.scene, &start, 0.0)?;
     for (time, size) in scene.steps() {
         simulation.step(&scene.inputs_over(time, size)?, time, size)?;

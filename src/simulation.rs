@@ -354,10 +354,11 @@ impl Simulation {
             BooleanOutput::SecondClosed => self.model.roles.second,
             BooleanOutput::PusherClosed => self.model.roles.pusher,
         };
-        index.is_some_and(|index| {
-            let closed = self.motion.state().links.get(index).is_some_and(|link| link.closed);
+        let link = |index| Some((index, self.model.links.get(index)?, self.motion.state().links.get(index)?));
+        index.and_then(link).is_some_and(|(index, link, at)| {
             // At the instant of closing there is no force yet.
-            self.motion.force(&self.model, index) > 0.0 || closed && !self.model.law.never_opens()
+            let touches = at.closed && link.contact().is_some_and(|law| !law.never_opens());
+            touches || self.motion.force(&self.model, index) > 0.0
         })
     }
 }

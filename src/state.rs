@@ -20,7 +20,7 @@ pub struct State {
     #[serde(with = "BigArray")]
     pub modes: ModeStates,
     /// Whether, after exact steps, [`State::modes`] are instead those of beam and linear contact together
-    /// ([`crate::closed_loop`]).
+    /// (`closed_loop`).
     pub with_contact: bool,
     /// Displacements of the inputs since the preload, m.
     pub displacements: Ways,

@@ -32,7 +32,7 @@ fn scenes() -> Vec<SceneFile> {
 
 /// The outputs of a scene by itself.
 fn alone(scene: &SceneFile) -> Result<Vec<f64>, SceneError> {
-    let start = scene.inputs_over(0.0, scene.communication_step)?;
+    let start = scene.first_inputs()?;
     let mut contact = Simulation::new(&scene.scene, &start, 0.0)?;
     for (time, size) in scene.steps() {
         contact.step(&scene.inputs_over(time, size)?, time, size).unwrap();

@@ -32,7 +32,7 @@ fn read(name: &str, tolerance: &str) -> Result<SceneFile> {
 }
 
 fn start(scene: &SceneFile) -> Result<Simulation> {
-    let inputs = scene.inputs_over(0.0, scene.communication_step)?;
+    let inputs = scene.first_inputs()?;
     Ok(Simulation::new(&scene.scene, &inputs, 0.0)?)
 }
 

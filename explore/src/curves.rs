@@ -28,7 +28,7 @@ const SUMMARY: [RealOutput; 5] = [
 /// 0 for a closing.
 pub fn curves(text: &str) -> Result<Vec<f64>, RunError> {
     let file: SceneFile = text.parse()?;
-    let start = file.inputs_over(0.0, file.communication_step)?;
+    let start = file.first_inputs()?;
     let mut contact = Simulation::new(&file.scene, &start, 0.0)?;
     let (mut rows, mut events) = (Vec::new(), Vec::new());
     let mut record = |contact: &Simulation| {

@@ -67,7 +67,7 @@ pub struct Law {
     pub offset: f64,
     /// What opens the contact.
     pub opening: Opening,
-    /// Force that counts as none where the contact opens, N. It and the next two are set by [`Law::judged`].
+    /// Force that counts as none where the contact opens, N. It and the next two are set by `judged`.
     pub traces: f64,
     /// Indentation up to which the contact counts as open, m.
     pub least: f64,

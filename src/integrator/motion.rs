@@ -153,7 +153,7 @@ impl Motion {
     /// Whether the values are consistent: finite, with times in order (check of a deserialised state).
     pub fn is_sound(&self) -> bool {
         let Self { time, current, current_rate, size, extremes, drive, start, end, dense } = self;
-        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.acceleration(start.time)];
+        let numbers = [*time, *current, *current_rate, *size, drive.jerk, drive.acceleration(start.time), drive.coil];
         let extremes = extremes.iter().flat_map(Extremes::numbers);
         let moving = drive.velocities.into_iter().chain(drive.displacements);
         numbers.into_iter().chain(moving).chain(extremes).all(f64::is_finite)

@@ -139,6 +139,14 @@ impl SceneFile {
         Ok(inputs)
     }
 
+    /// The inputs over the first communication step, with which a run starts.
+    ///
+    /// # Errors
+    /// As [`Self::inputs_over`].
+    pub fn first_inputs(&self) -> Result<Inputs, SceneError> {
+        self.inputs_over(0.0, self.communication_step.min(self.stop))
+    }
+
     /// Sets `stop`, `communicationStep`, `outputs` (names separated by commas), a parameter or an input by name, from
     /// text such as `0.0155` or `Sine`; a relative file is one beside the scene. An input is then held, even if the table
     /// has a column for it.

@@ -57,7 +57,7 @@ fn scene(path: &Path) -> Result<String> {
 
 /// Runs a scene file, and does something at each of its communication points.
 pub fn run(file: &SceneFile, mut each: impl FnMut(&Simulation, f64) -> Result<()>) -> Result<()> {
-    let mut simulation = Simulation::new(&file.scene, &file.inputs_over(0.0, file.communication_step)?, 0.0)?;
+    let mut simulation = Simulation::new(&file.scene, &file.first_inputs()?, 0.0)?;
     each(&simulation, 0.0)?;
     for (time, size) in file.steps() {
         simulation.step(&file.inputs_over(time, size)?, time, size)?;
