@@ -1,9 +1,7 @@
 //! The ports and links of a model: what its scene puts together.
 
-use nalgebra::{DMatrix, DVector};
-
 use crate::armature::Armature;
-use crate::beam::mode::Mode;
+use crate::beam::mode::{Mode, lowest_frequency};
 use crate::chatter::Criterion;
 use crate::contact::friction::{self, Friction};
 use crate::contact::law::Law;
@@ -145,21 +143,15 @@ impl Assembly {
 
     /// Lowest angular frequency about the preload, rad/s: of the modes with every closed link as a spring.
     pub fn frequency(&self, modes: &[Mode], coil: f64) -> Option<f64> {
-        let squares = modes.iter().map(|mode| mode.omega_squared);
-        let mut rigidity = DMatrix::from_diagonal(&DVector::from_iterator(modes.len(), squares));
-        for link in &self.links {
+        let springs = self.links.iter().filter_map(|link| {
             let stiffness = match &link.law {
                 LinkLaw::Contact(law) if link.force > 0.0 => law.tangent_stiffness(link.force),
                 LinkLaw::Magnet(magnet) => magnet.force(link.approach, coil).1,
-                _ => continue,
+                _ => return None,
             };
-            let shape = &self.ports.get(link.port)?.shape;
-            let shape = DVector::from_iterator(modes.len(), shape.iter().copied().take(modes.len()));
-            rigidity.ger(stiffness, &shape, &shape, 1.0);
-        }
-        // From the inverse, whose largest eigenvalue has full relative accuracy.
-        let flexibility = rigidity.cholesky()?.inverse();
-        Some(1.0 / flexibility.symmetric_eigenvalues().max().sqrt())
+            Some((stiffness, self.ports.get(link.port)?.shape))
+        });
+        lowest_frequency(modes, springs)
     }
 
     /// Adds a port, and returns its index.

@@ -1,6 +1,7 @@
 //! The damped modes of the springs without contact, and their motion.
 
 use bytemuck::Zeroable;
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::math::simd::LANES;
@@ -81,3 +82,16 @@ pub struct ModeState {
 
 /// States of all modes; those in use come first, the rest are zero.
 pub type ModeStates = [ModeState; MAX_MODES];
+
+/// Lowest angular frequency of modes with springs on them, each of a stiffness (N/m) and a participation in each mode, rad/s.
+pub(crate) fn lowest_frequency(modes: &[Mode], springs: impl Iterator<Item = (f64, Modal)>) -> Option<f64> {
+    let squares = modes.iter().map(|mode| mode.omega_squared);
+    let mut rigidity = DMatrix::from_diagonal(&DVector::from_iterator(modes.len(), squares));
+    for (stiffness, shape) in springs {
+        let shape = DVector::from_iterator(modes.len(), shape.into_iter().take(modes.len()));
+        rigidity.ger(stiffness, &shape, &shape, 1.0);
+    }
+    // From the inverse, whose largest eigenvalue has full relative accuracy.
+    let flexibility = rigidity.cholesky()?.inverse();
+    Some(1.0 / flexibility.symmetric_eigenvalues().max().sqrt())
+}

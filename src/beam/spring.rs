@@ -1,11 +1,13 @@
 //! The spring as the rest of the model sees it: statics, modes, and how many of them. Uniform, by segments, or by modes.
 
+use std::iter;
+
 use nalgebra::DVector;
 
 use crate::beam::characteristic;
 use crate::beam::galerkin::Space;
 use crate::beam::given::Given;
-use crate::beam::mode::{Last, MAX_MODES, Mode, Rayleigh, SPRINGS};
+use crate::beam::mode::{Last, MAX_MODES, Mode, Rayleigh, SPRINGS, lowest_frequency};
 use crate::beam::mode_count::{Blow, MOST};
 use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
@@ -53,8 +55,9 @@ pub struct Basis {
 /// random springs of segments. Pinned: 0, `tests/promise.rs`.
 const IRREGULAR: usize = 5;
 
-/// Functions in which the lowest frequency of a spring of segments is found to rounding.
-const FREQUENCY_TERMS: usize = 32;
+/// Modes for the lowest frequency of springs: what the others add to the flexibility there, beyond their static share, is less than
+/// rounding of the compliance.
+pub const FREQUENCY_MODES: usize = 32;
 
 impl Spring {
     /// The spring of a scene.
@@ -135,11 +138,8 @@ impl Spring {
                 modes,
             });
         }
-        let asked = (self.form.clone(), self.statics.section, (count, axial_force, self.rubs));
-        let (undamped, space) = Shared::of(&KNOWN).modes.of(asked, |(form, section, (count, axial_force, rubs))| {
-            let space = form.space(section, *count, *axial_force, *rubs)?;
-            Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
-        })?;
+        let asked = (count, axial_force, self.rubs);
+        let (undamped, space) = undamped(&self.form, &self.statics.section, asked)?;
         let (mut modes, shapes): (Vec<Mode>, Vec<DVector<f64>>) = undamped.into_iter().unzip();
         for mode in &mut modes {
             mode.damping = self.damping.of(mode.omega_squared);
@@ -154,13 +154,22 @@ impl Spring {
     pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
         let asked = (self.form.clone(), self.statics.section, (axial_force, stiffness));
         Shared::of(&KNOWN).frequencies.of(asked, |(form, section, (axial_force, stiffness))| {
-            if let Form::Uniform = form {
-                let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
-                return frequencies.first().copied();
+            let modes: Vec<_> = match form {
+                Form::Uniform => {
+                    let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
+                    return frequencies.first().copied();
+                }
+                Form::Segments(_) => {
+                    let (modes, _) = undamped(form, section, (FREQUENCY_MODES, *axial_force, false))?;
+                    modes.into_iter().map(|(mode, _)| mode).collect()
+                }
+                Form::Modes(given) => given.modes(MAX_MODES, Rayleigh::default()),
+            };
+            let mut tip = [0.0; MAX_MODES];
+            for (tip, mode) in tip.iter_mut().zip(&modes) {
+                *tip = mode.tip;
             }
-            let space = form.space(section, FREQUENCY_TERMS, *axial_force, false)?;
-            let modes = space.modes(section, *axial_force, *stiffness)?;
-            modes.first().map(|mode| mode.omega_squared.sqrt())
+            lowest_frequency(&modes, iter::once((*stiffness, tip)))
         })
     }
 }
@@ -195,6 +204,15 @@ type Asked = (usize, f64, bool);
 type Undamped = (Vec<(Mode, DVector<f64>)>, Space);
 
 pub static KNOWN: Home<Known> = Home::new(None);
+
+/// Modes without damping, with the space they are found in.
+fn undamped(form: &Form, section: &Section, asked: Asked) -> Option<Undamped> {
+    let asked = (form.clone(), *section, asked);
+    Shared::of(&KNOWN).modes.of(asked, |(form, section, (count, axial_force, rubs))| {
+        let space = form.space(section, *count, *axial_force, *rubs)?;
+        Some((space.modes_with_shapes(section, *axial_force, 0.0)?, space))
+    })
+}
 
 /// The statics of a spring of segments, and what it is made of.
 fn of_segments(segments: &Segments, scene: &Scene) -> (Statics, Form) {

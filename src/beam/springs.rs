@@ -20,17 +20,13 @@ use crate::armature::Armature;
 use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
-use crate::beam::spring::{Basis, Spring};
+use crate::beam::spring::{Basis, FREQUENCY_MODES, Spring};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues;
 use crate::error::Remark;
 use crate::math::simd::LANES;
 use crate::scene::Scene;
 use crate::variables::{PusherKind, StringParameter};
-
-/// Modes of each spring for the lowest frequency of both: what the others add to the flexibility there, beyond their static
-/// share, is less than rounding of the compliance.
-const FREQUENCY_MODES: usize = 32;
 
 #[derive(Clone, Debug)]
 pub struct Springs {
