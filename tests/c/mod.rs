@@ -6,27 +6,25 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::LazyLock;
 
 use nalgebra::Complex;
 use relay_contact::reference::{self, Model};
 use relay_contact::scene::Scene;
 use relay_contact::variables::VARIABLES;
 
-/// Compiles `source`, a path in the project, and gives the program, ready to be started with the dynamic library that cargo
-/// builds beside the test.
-fn compiled(source: &str) -> Command {
-    let test = std::env::current_exe().unwrap();
-    let libraries = test.parent().unwrap();
+/// The program of `examples/embed.c`, compiled once for all tests, which run beside each other: linking makes a file that is no
+/// program for a moment.
+static IN_C: LazyLock<PathBuf> = LazyLock::new(|| {
+    let libraries = libraries();
     assert!(libraries.join(format!("{DLL_PREFIX}relay_contact{DLL_SUFFIX}")).exists());
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join(source);
-    let name = source.file_stem().unwrap().to_str().unwrap();
-    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}{EXE_SUFFIX}"));
+    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("embed{EXE_SUFFIX}"));
     let compiler = Command::new("cc")
         // Rust rounds every operation; C may fuse a product and a sum, as clang does on Arm.
         .args(["-std=c99", "-ffp-contract=off"])
         .args(["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I"])
         .arg(env!("RELAY_CONTACT_INCLUDE"))
-        .arg(source)
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/embed.c"))
         .arg("-L")
         .arg(libraries)
         .args(["-lrelay_contact", "-lm", "-o"])
@@ -34,9 +32,18 @@ fn compiled(source: &str) -> Command {
         .output()
         .expect("a C compiler that is called cc (Debian: apt install gcc)");
     assert!(compiler.status.success(), "{}", String::from_utf8_lossy(&compiler.stderr));
-    let mut command = Command::new(program);
+    program
+});
+
+/// Where cargo builds the dynamic library, beside the test.
+fn libraries() -> PathBuf {
+    std::env::current_exe().unwrap().parent().unwrap().to_path_buf()
+}
+
+fn in_c() -> Command {
+    let mut command = Command::new(&*IN_C);
     // Cargo points this at a folder that may hold the library of an earlier build.
-    command.env("LD_LIBRARY_PATH", libraries);
+    command.env("LD_LIBRARY_PATH", libraries());
     command
 }
 
@@ -60,7 +67,7 @@ fn run(mut program: Command, acceleration: &str, duration: &str, table: &str) ->
 #[test]
 fn both_languages_give_the_same_numbers() {
     let rust = run(in_rust(), "400", "0.006", "embed-rust.csv");
-    let c = run(compiled("examples/embed.c"), "400", "0.006", "embed-c.csv");
+    let c = run(in_c(), "400", "0.006", "embed-c.csv");
     // Written so that they are read as the same bits.
     assert_eq!(rust, c);
     assert_eq!(rust.1.len(), 3000);
@@ -99,7 +106,7 @@ fn a_small_vibration_gives_the_linear_response() {
 #[test]
 fn a_refused_value_ends_an_example_with_its_name_and_range() {
     for (acceleration, told) in [("nan", "base.acceleration = NaN m/s2: not allowed"), ("40o", "40o: not a number")] {
-        for mut program in [in_rust(), compiled("examples/embed.c")] {
+        for mut program in [in_rust(), in_c()] {
             let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused.csv");
             let ran = program.args([acceleration, "0.01"]).arg(table).output().unwrap();
             let said = String::from_utf8_lossy(&ran.stderr);
