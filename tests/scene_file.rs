@@ -213,11 +213,9 @@ fn between_rows_inputs_are_linear_and_beyond_them_held() -> Result<(), Box<dyn E
     assert!((half.support_displacement + 5e-5).abs() < 1e-19);
     assert!((half.support_displacement_rate + 2e-4).abs() < 1e-18);
     // A run shorter than a communication step passes no row after its end.
-    let mut short = file;
-    short.stop = 0.2;
-    short.communication_step = 10.0;
+    let mut short = file.clone();
+    (short.stop, short.communication_step) = (0.2, 10.0);
     assert_eq!(short.first_inputs()?, held(0.5, 0.0));
-    let file = short;
     // Over a row the rate leads to the value at the end of the step.
     let over = file.inputs_over(0.5, 0.5)?;
     assert_eq!((over.contact_current, over.contact_current_rate), (1.0, 1.0));

@@ -1,6 +1,6 @@
 //! The spring as the rest of the model sees it: statics, modes, and how many of them. Uniform, by segments, or by modes.
 
-use std::iter;
+use std::{array, iter};
 
 use nalgebra::DVector;
 
@@ -154,21 +154,12 @@ impl Spring {
     pub fn frequency(&self, axial_force: f64, stiffness: f64) -> Option<f64> {
         let asked = (self.form.clone(), self.statics.section, (axial_force, stiffness));
         Shared::of(&KNOWN).frequencies.of(asked, |(form, section, (axial_force, stiffness))| {
-            let modes: Vec<_> = match form {
-                Form::Uniform => {
-                    let frequencies = characteristic::frequencies(section, *axial_force, *stiffness, 1);
-                    return frequencies.first().copied();
-                }
-                Form::Segments(_) => {
-                    let (modes, _) = undamped(form, section, (FREQUENCY_MODES, *axial_force, false))?;
-                    modes.into_iter().map(|(mode, _)| mode).collect()
-                }
-                Form::Modes(given) => given.modes(MAX_MODES, Rayleigh::default()),
-            };
-            let mut tip = [0.0; MAX_MODES];
-            for (tip, mode) in tip.iter_mut().zip(&modes) {
-                *tip = mode.tip;
+            if let Form::Uniform = form {
+                return characteristic::frequencies(section, *axial_force, *stiffness, 1).first().copied();
             }
+            let (modes, _) = undamped(form, section, (FREQUENCY_MODES, *axial_force, false))?;
+            let modes: Vec<_> = modes.into_iter().map(|(mode, _)| mode).collect();
+            let tip = array::from_fn(|i| modes.get(i).map_or(0.0, |mode| mode.tip));
             lowest_frequency(&modes, iter::once((*stiffness, tip)))
         })
     }
@@ -236,5 +227,5 @@ const NONE: Last = [0.0; LANES];
 
 fn last_of(shape: &DVector<f64>) -> Last {
     let place = |k: usize| (shape.len() + k).checked_sub(LANES);
-    std::array::from_fn(|k| place(k).and_then(|place| shape.get(place)).copied().unwrap_or_default())
+    array::from_fn(|k| place(k).and_then(|place| shape.get(place)).copied().unwrap_or_default())
 }

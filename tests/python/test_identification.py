@@ -344,10 +344,8 @@ def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
     factors = laboratory.correction(replace(data, over=np.array([1000.0, 1200.0])), rough.parameters)
     assert 1.1 < factors.max() < 1.3
     # Above 100 g, too.
-    tight, data = (
-        {**rough.parameters, "contact.overtravel": 2e-3},
-        replace(data, over=np.array([1200.0, 1500.0, 2000.0])),
-    )
+    tight = {**rough.parameters, "contact.overtravel": 2e-3}
+    data = replace(data, over=np.array([1200.0, 1500.0, 2000.0]))
     assert laboratory.predict(data, tight).min() > 1e3
     assert np.abs(laboratory.correction(data, tight) - 1).min() > 1e-3
 

@@ -35,8 +35,8 @@ pub(super) struct Rounds<'a, const S: usize> {
     start: Modal,
     room: &'a mut AxialLoads<S>,
     count: u64,
-    /// Deflection of the tip at the nodes, m, once the loads have settled.
-    tip: Nodal<S>,
+    /// Axial force above that of the preload at the nodes, N, once the loads have settled.
+    change: Nodal<S>,
 }
 
 impl<'a, const S: usize> Rounds<'a, S> {
@@ -52,7 +52,7 @@ impl<'a, const S: usize> Rounds<'a, S> {
         for (loads, start) in room.loads.iter_mut().zip(&start) {
             *loads = [*start; S];
         }
-        Self { model, axial, state, step, collocation, free: free.clone(), start, room, count: 0, tip: [0.0; S] }
+        Self { model, axial, state, step, collocation, free: free.clone(), start, room, count: 0, change: [0.0; S] }
     }
 
     /// Sets the free response to that with the loads of the motion under the forces of a trial; once that changes the loads no more,
@@ -92,12 +92,17 @@ impl<'a, const S: usize> Rounds<'a, S> {
     pub(super) fn begin_deviation<A: Arithmetic>(&mut self) -> u64 {
         let AxialLoads { motion, next, deviation, .. } = &mut *self.room;
         deviation.fill([0.0; S]);
-        self.tip = tip::<S, A>(self.model, motion);
+        let tip = tip::<S, A>(self.model, motion);
+        self.change = tip.map(|y| self.axial.change(y));
+        let per_deflection = tip.map(|y| self.axial.slope(y));
         let blocks = next.chunks_mut(LANES).zip(self.axial.slopes.chunks_exact(LANES));
         for (block, (next, slopes)) in blocks.enumerate().take(deviation.len().div_ceil(LANES)) {
             let coupled = coupled::<S, A>(self.axial, motion, block);
             for ((next, slope), coupled) in next.iter_mut().zip(slopes).zip(&coupled) {
-                *next = coupled.map(|coupled| slope + coupled);
+                *next = per_deflection;
+                for (next, coupled) in next.iter_mut().zip(coupled) {
+                    *next *= slope + coupled;
+                }
             }
         }
         self.count
@@ -111,17 +116,13 @@ impl<'a, const S: usize> Rounds<'a, S> {
         let (starts, forces) =
             (&self.state.force_error.deviation, trial.links.each_ref().map(|nodes| &nodes.deviation));
         set_motion::<S, A>(self.model, self.step, starts, forces, (&[0.0; S], deviation), motion);
-        let change = self.tip.map(|y| self.axial.change(y));
-        let mut more = tip::<S, A>(self.model, motion);
-        for (more, y) in more.iter_mut().zip(&self.tip) {
-            *more *= self.axial.slope(*y);
-        }
+        let tip = tip::<S, A>(self.model, motion);
         for (block, (loads, next)) in deviation.chunks_mut(LANES).zip(next.chunks(LANES)).enumerate() {
             let coupled = coupled::<S, A>(self.axial, motion, block);
             for ((load, next), coupled) in loads.iter_mut().zip(next).zip(&coupled) {
-                let of_nodes = load.iter_mut().zip(more.iter().zip(next)).zip(change.iter().zip(coupled));
-                for ((load, (more, next)), (change, coupled)) in of_nodes {
-                    *load = more * next + change * coupled;
+                let of_nodes = load.iter_mut().zip(tip.iter().zip(next)).zip(self.change.iter().zip(coupled));
+                for ((load, (y, per_deflection)), (change, coupled)) in of_nodes {
+                    *load = y * per_deflection + change * coupled;
                 }
             }
         }

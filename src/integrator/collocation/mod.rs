@@ -6,6 +6,7 @@ pub mod coefficients;
 pub(crate) mod elimination;
 pub mod error;
 pub mod fading_load;
+mod modal_end;
 pub mod modal_response;
 pub mod newton;
 pub mod part;

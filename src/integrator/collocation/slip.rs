@@ -55,6 +55,11 @@ impl<const S: usize> SlipNodes<S> {
         if self.fading == 0.0 { 0.0 } else { self.fading * (-at / damping.max(f64::MIN_POSITIVE)).exp() }
     }
 
+    /// Slip velocity of that, m/s; without a damper it is over at once.
+    pub(crate) fn fading_rate(&self, at: f64, damping: f64) -> f64 {
+        if damping > 0.0 { self.left(at, damping) / damping } else { 0.0 }
+    }
+
     /// Energy dissipated since the start of a step of this length (s), J, by a friction force (N, at its start and nodes); with what is
     /// `left` of the fading part, which is over before the force changes.
     pub(crate) fn dissipated(

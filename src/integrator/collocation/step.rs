@@ -1,13 +1,13 @@
 //! A trial step: the nodal forces of the links ([`newton`](crate::integrator::collocation::newton)), the motion they cause, and
 //! its error ([`error`](crate::integrator::collocation::error)).
 
-use crate::beam::mode::{Modal, ModeState};
 use crate::excitation::drive::Drive;
 use crate::integrator::collocation::axial_force::Rounds;
 use crate::integrator::collocation::cache::Prepared;
-use crate::integrator::collocation::coefficients::{EndGroup, NodalMotion, Pairs};
+use crate::integrator::collocation::coefficients::{NodalMotion, Pairs};
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
+use crate::integrator::collocation::modal_end::{Group, load, load_each, move_freely, pairs, twice};
 use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::{follow, follow_deviation};
 use crate::integrator::collocation::trial::{
@@ -18,9 +18,6 @@ use crate::math::nodal::{Nodal, add, add_products, dot, end, greatest, scaled};
 use crate::math::simd::{Arithmetic, LANES, compiled_for};
 use crate::model::Model;
 use crate::state::State;
-
-/// A group of modes.
-type Group = [ModeState; LANES];
 
 /// Computes the prepared step from `state`, contacts closed or open as in `state`. `None` if the iteration for the forces does
 /// not converge.
@@ -434,78 +431,4 @@ impl<const S: usize> Step<'_, S> {
             load::<S, A>(self.prepared.step.end, ends, &port.shape, forces);
         }
     }
-}
-
-/// Moves modes from the start to the end of a step, without loads. All of this is done in pairs, as modes are read and written: apart,
-/// q and v take twice the instructions.
-#[inline(always)]
-fn move_freely<const S: usize, A: Arithmetic>(rows: &[EndGroup<S>], starts: &[ModeState], ends: &mut [Group]) {
-    for (rows, (start, end)) in rows.iter().zip(starts.as_chunks().0.iter().zip(ends)) {
-        let (same, mut other) = (pairs(start), [0.0; 2 * LANES]);
-        for (other, start) in other.as_chunks_mut().0.iter_mut().zip(start) {
-            *other = [start.v, start.q];
-        }
-        let mut sum = [0.0; 2 * LANES];
-        add_products::<{ 2 * LANES }, A>(&mut sum, &rows.same, &same);
-        add_products::<{ 2 * LANES }, A>(&mut sum, &rows.crossed, &other);
-        set(end, &sum);
-    }
-}
-
-/// Adds to modes at the end what a load does that acts on each with its part, and has these nodal values.
-#[inline(always)]
-fn load<const S: usize, A: Arithmetic>(rows: &[EndGroup<S>], ends: &mut [Group], parts: &Modal, values: &Nodal<S>) {
-    for (rows, (end, parts)) in rows.iter().zip(ends.iter_mut().zip(parts.as_chunks().0)) {
-        let mut moved = [0.0; 2 * LANES];
-        for (value, row) in values.iter().zip(&rows.from_load) {
-            add::<{ 2 * LANES }, A>(&mut moved, *value, row);
-        }
-        let mut sum = pairs(end);
-        add_products::<{ 2 * LANES }, A>(&mut sum, &twice(parts), &moved);
-        set(end, &sum);
-    }
-}
-
-/// Adds what loads of their own do to each mode.
-#[inline(always)]
-fn load_each<const S: usize, A: Arithmetic>(rows: &[EndGroup<S>], ends: &mut [Group], loads: &[Nodal<S>]) {
-    for (rows, (end, loads)) in rows.iter().zip(ends.iter_mut().zip(loads.chunks(LANES))) {
-        let mut sum = pairs(end);
-        for (k, row) in rows.from_load.iter().enumerate() {
-            let mut load = [0.0; LANES];
-            for (load, values) in load.iter_mut().zip(loads) {
-                *load = values.get(k).copied().unwrap_or_default();
-            }
-            add_products::<{ 2 * LANES }, A>(&mut sum, row, &twice(&load));
-        }
-        set(end, &sum);
-    }
-}
-
-/// The values of a group.
-#[inline(always)]
-fn pairs(modes: &Group) -> Pairs {
-    let mut pairs = [0.0; 2 * LANES];
-    for (pair, mode) in pairs.as_chunks_mut().0.iter_mut().zip(modes) {
-        *pair = [mode.q, mode.v];
-    }
-    pairs
-}
-
-/// Sets the values of a group.
-#[inline(always)]
-fn set(modes: &mut Group, pairs: &Pairs) {
-    for (mode, [q, v]) in modes.iter_mut().zip(pairs.as_chunks().0) {
-        (mode.q, mode.v) = (*q, *v);
-    }
-}
-
-/// The value of each mode for its q and for its v.
-#[inline(always)]
-fn twice(values: &[f64; LANES]) -> Pairs {
-    let mut pairs = [0.0; 2 * LANES];
-    for (pair, value) in pairs.as_chunks_mut().0.iter_mut().zip(values) {
-        *pair = [*value; 2];
-    }
-    pairs
 }

@@ -58,9 +58,9 @@ impl<'a, const S: usize> Locator<'a, S> {
         let whole = self.whole;
         let (normal, nodes) = whole.trial.links.get(CONTACT).zip(whole.trial.links.get(index))?;
         let z = -along_at.approach - whole.state.slip.way;
-        let mut first = |start: f64, values: &[f64; S], fading: Fading, phase: Phase| {
+        let mut first = |start: f64, values: &[f64; S], beside: &dyn Fn(f64) -> f64, phase: Phase| {
             let exceeds = |y: f64, value: f64| self.is_beyond((1.0 + y) * whole.length, value, phase);
-            passage((whole.collocation, whole.model.simd), start, values, fading, exceeds)
+            passage((whole.collocation, whole.model.simd), start, values, beside, exceeds)
         };
         let ((y, slope), phase) = if let Some(sign) = whole.state.slip.phase.sign() {
             // The friction force that is missing for the slip velocity.
@@ -68,18 +68,16 @@ impl<'a, const S: usize> Locator<'a, S> {
             let stiffness = friction.ratio * law.firm;
             let per_velocity = sign * stiffness * (damping + whole.length);
             let wrong = scaled(&whole.trial.slip.rates, per_velocity);
-            let (before, fading) = if is_long::<S>(whole.length, damping) {
-                // Without a damper it is over at once.
-                let velocity = if damping > 0.0 { whole.trial.slip.fading / damping } else { 0.0 };
-                let fading = Fading { start: per_velocity * velocity, rate: whole.length / damping };
-                (dot::<S, Separate>(&wrong, &whole.collocation.at_start), fading)
+            let fades = |y: f64| per_velocity * whole.trial.slip.fading_rate((1.0 + y) * whole.length, damping);
+            let before = if is_long::<S>(whole.length, damping) {
+                dot::<S, Separate>(&wrong, &whole.collocation.at_start)
             } else {
                 // As a jump of the contact force has left it.
                 let across = (contact.approach + contact_at.approach, contact_at.rate);
                 let turned = friction.turned(law, sign, across, (z, -along_at.rate));
-                ((stiffness * (1.0 + whole.length / damping) * turned).min(0.0), Fading::default())
+                (stiffness * (1.0 + whole.length / damping) * turned).min(0.0)
             };
-            (first(before, &wrong, fading, Phase::Stick)?, Phase::Stick)
+            (first(before, &wrong, &fades, Phase::Stick)?, Phase::Stick)
         } else {
             let [back, forth] = [1.0, -1.0].map(|sign| {
                 let phase = Phase::slip(sign);
@@ -89,7 +87,7 @@ impl<'a, const S: usize> Locator<'a, S> {
                     *value = excess(along.force + *value, contact.force + force);
                 }
                 let before = excess(along_at.force, contact_at.force);
-                first(before, &values, Fading::default(), phase).map(|found| (found, phase))
+                first(before, &values, &|_| 0.0, phase).map(|found| (found, phase))
             });
             match (back, forth) {
                 (Some(back), Some(forth)) if forth.0.0 < back.0.0 => forth,
@@ -171,47 +169,31 @@ impl<'a, const S: usize> Locator<'a, S> {
     }
 }
 
-/// What fades beside a polynomial over a step.
-#[derive(Clone, Copy, Debug, Default)]
-struct Fading {
-    /// At the start of the step, N.
-    start: f64,
-    /// Step lengths per time constant, 1.
-    rate: f64,
-}
-
-impl Fading {
-    /// What is left of it, relative to the end of the step in step lengths, N.
-    fn left(&self, y: f64) -> f64 {
-        // There is none in most steps.
-        if self.start == 0.0 { 0.0 } else { self.start * (-self.rate * (1.0 + y)).exp() }
-    }
-}
-
-/// Where the polynomial through `start` and the nodal values, with what fades beside it, passes zero before it first `exceeds` it, as is
-/// asked where the polynomial turns and at the end: relative to the end of the step in step lengths, and the slope there.
+/// Where the polynomial through `start` and the nodal values, with what there is `beside` it, passes zero before it first `exceeds` it, as
+/// is asked where the polynomial turns and at the end: relative to the end of the step in step lengths, and the slope of the polynomial
+/// there.
 fn passage<const S: usize>(
     (collocation, simd): (&Collocation<S>, Simd),
     start: f64,
     values: &[f64; S],
-    fading: Fading,
+    beside: &dyn Fn(f64) -> f64,
     mut exceeds: impl FnMut(f64, f64) -> bool,
 ) -> Option<(f64, f64)> {
-    let mut before = (-1.0, start + fading.start);
+    let mut before = (-1.0, start + beside(-1.0));
     let mut nodal = scaled(values, -1.0);
     for (value, node) in nodal.iter_mut().zip(&collocation.nodes) {
-        *value -= fading.left(node - 1.0);
+        *value -= beside(node - 1.0);
     }
     if !Collocation::comes_near_zero(-before.1, &nodal) {
         return None;
     }
     let polynomial = collocation.through(simd, start, values);
-    let value = |y: f64| value_at(&polynomial, y) + fading.left(y);
+    let value = |y: f64| value_at(&polynomial, y) + beside(y);
     for y in turning_points(simd, &polynomial).iter().chain([0.0]) {
         let now = (y, value(y));
         if now.1 > 0.0 && exceeds(y, now.1) {
             let y = roots::between(value, before, now, 1e-12).unwrap_or(before.0);
-            return Some((y, value_and_slope(&polynomial, y).1 - fading.rate * fading.left(y)));
+            return Some((y, value_and_slope(&polynomial, y).1));
         }
         before = (y, now.1.min(0.0));
     }
