@@ -221,8 +221,18 @@ impl<'a> Pressed<'a> {
             // A force that the spring cannot take is too large.
             self.with(force).map_or(f64::MAX, |with| d - self.parallel_indentation(&with, force))
         };
-        let Some(indentation) = roots::bracketed(excess, 0.0, open) else {
-            return Err(not_finite(RealOutput::ParallelForce, excess(open)));
+        // From small forces on, to hardly more than twice the one sought: far beyond it, where the spring were bent by more than its
+        // length, what it seems to do jumps through zero.
+        let most = self.springs.at_parallel(first.axial_force).own + self.give;
+        let (mut force, mut below, mut above) = (0.0, (0.0, -open), (0.0, -open));
+        while above.1 < 0.0 && above.0 < open {
+            below = above;
+            force = 2.0 * force - above.1 / most.max(f64::MIN_POSITIVE);
+            let d = law.indentation(force).min(open);
+            above = (d, excess(d));
+        }
+        let Some(indentation) = roots::between(excess, below, above, 0.0) else {
+            return Err(not_finite(RealOutput::ParallelForce, above.1));
         };
         let force = law.elastic_force(indentation);
         Ok(Preload { parallel_force: force, parallel_indentation: indentation, ..self.with(force)? })

@@ -311,6 +311,25 @@ fn contacts_of_all_heights_find_their_preload() {
     }
 }
 
+/// No equilibrium is found where the spring were bent by more than its length.
+#[test]
+fn the_preload_of_both_follows_a_material_without_jumps() {
+    for offset in [-1e-4, -1e-5, -1e-6] {
+        let mut scene = pair(Scene::default());
+        scene.effects.axial_force = AxialForceKind::FromPreload;
+        scene.parallel.offset = offset;
+        scene.solver.modes = 4;
+        let forces = (0..400).map(|k| {
+            scene.contact.moving.poisson_ratio = 0.25 + 5e-4 * f64::from(k);
+            Model::new(&scene, 0.0).unwrap().preload.parallel_force
+        });
+        let forces: Vec<f64> = forces.collect();
+        for (k, pair) in forces.windows(2).enumerate() {
+            assert!((pair[1] / pair[0] - 1.0).abs() < 1e-3, "{offset} m, value {k}: {pair:?} N");
+        }
+    }
+}
+
 /// Against each other the tongues of a forked spring move as the cantilever that both are beyond the fork: here of a tapered
 /// spring with a mass and a contact before its end, its dimensions at the cut worked out by hand.
 #[test]

@@ -40,8 +40,8 @@ impl Feedback {
     /// For the modes about the preload, under the constant acceleration `gravity` (m/s2).
     pub fn new(section: &Section, preload: &Preload, gravity: f64, basis: &Basis) -> Self {
         let Basis { modes, shapes, space, .. } = basis;
-        let product = |a, b| space.slope_product(section.length, a, b);
-        let row = |a| std::array::from_fn(|i| shapes.get(i).map_or(0.0, |b| product(a, b)));
+        let slopes: Vec<_> = shapes.iter().map(|shape| space.slopes_of(section.length, shape)).collect();
+        let row = |a: &DVector<f64>| std::array::from_fn(|i| slopes.get(i).map_or(0.0, |b| a.dot(b)));
         let geometric: Vec<Modal> = shapes.iter().map(row).collect();
         let at_rest = |mode: &Mode| (mode.tip * preload.force - mode.participation * gravity) / mode.omega_squared;
         let mut slopes = [0.0; MAX_MODES];

@@ -150,9 +150,9 @@ impl Space {
         Some(modes)
     }
 
-    /// Integral over the length (m) of the product of the slopes of two shapes.
-    pub fn slope_product(&self, length: f64, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
-        2.0 / length * a.dot(&(&self.geometric * b))
+    /// Of a shape what gives, times another one, the integral over the length (m) of the product of their slopes.
+    pub fn slopes_of(&self, length: f64, shape: &DVector<f64>) -> DVector<f64> {
+        &self.geometric * shape * (2.0 / length)
     }
 }
 

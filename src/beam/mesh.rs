@@ -4,7 +4,7 @@
 //! free end, the moment over `E I` the deflection by two from the clamp: no system of equations, and exact but for the
 //! polynomials on a piece.
 
-use nalgebra::{DMatrix, DVectorViewMut, Dyn, LU};
+use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, Dyn, LU};
 
 use crate::beam::pieces::Pieces;
 use crate::math::legendre;
@@ -25,13 +25,19 @@ struct Stretch {
     mass_per_length: Vec<f64>,
 }
 
+/// Moments along a spring, N m.
+#[derive(Clone, Debug)]
+pub struct Moments {
+    clamp: f64,
+    /// At the nodes of all stretches.
+    nodes: Vec<f64>,
+}
+
 /// A bent spring.
 #[derive(Clone, Debug)]
 pub struct Bend {
-    /// Moment at the clamp, N m.
-    clamp: f64,
-    /// Moment (N m), slope (1) and deflection (m) at the nodes of all stretches.
-    moment: Vec<f64>,
+    moments: Moments,
+    /// Slope (1) and deflection (m) at the nodes of all stretches.
     pub slope: Vec<f64>,
     pub deflection: Vec<f64>,
     /// Deflection (m) and slope (1) at the ends of the stretches.
@@ -58,19 +64,19 @@ impl<'a> Mesh<'a> {
         Self { stretches: stretches.collect(), spring, rule }
     }
 
-    /// The spring under a moment at the clamp (N m) and at the nodes, from the clamp on.
-    fn bent(&self, clamp: f64, moment: Vec<f64>) -> Bend {
+    /// The spring under these moments, from the clamp on.
+    pub fn bent(&self, moments: Moments) -> Bend {
+        let (count, clamp) = (moments.nodes.len(), moments.clamp);
         let mut bend = Bend {
-            clamp,
-            slope: Vec::with_capacity(moment.len()),
-            deflection: Vec::with_capacity(moment.len()),
-            moment,
+            moments,
+            slope: Vec::with_capacity(count),
+            deflection: Vec::with_capacity(count),
             ends: Vec::with_capacity(self.stretches.len()),
         };
         let (mut deflection, mut slope) = (0.0, self.spring.clamp_flexibility * clamp);
-        for (stretch, moment) in self.stretches.iter().zip(bend.moment.chunks_exact(self.rule.len())) {
-            let (slopes, end) = self.along(stretch, moment, (deflection, slope));
-            bend.deflection.extend(self.rule.integrals(&slopes).map(|sum| deflection + stretch.half * sum));
+        for (stretch, moments) in self.stretches.iter().zip(bend.moments.nodes.chunks_exact(self.rule.len())) {
+            let (slopes, end) = self.along(stretch, moments, (deflection, slope));
+            bend.deflection.extend(self.rule.integrals(&slopes).iter().map(|sum| deflection + stretch.half * sum));
             bend.slope.extend(slopes);
             bend.ends.push(end);
             (deflection, slope) = end;
@@ -82,14 +88,14 @@ impl<'a> Mesh<'a> {
     fn along(&self, stretch: &Stretch, moments: &[f64], (deflection, slope): (f64, f64)) -> (Vec<f64>, (f64, f64)) {
         let half = stretch.half;
         let curvature: Vec<f64> = moments.iter().zip(&stretch.flexibility).map(|(m, f)| m * f).collect();
-        let slopes: Vec<f64> = self.rule.integrals(&curvature).map(|sum| slope + half * sum).collect();
+        let slopes: Vec<f64> = self.rule.integrals(&curvature).iter().map(|sum| slope + half * sum).collect();
         let end = (deflection + half * self.rule.integral(&slopes), slope + half * self.rule.integral(&curvature));
         (slopes, end)
     }
 
-    /// The spring under a force per length at the nodes (N/m), and a force (N) and a moment (N m) at the end of each stretch: the
-    /// moments from the free end on.
-    fn under(&self, density: &[f64], ends: impl DoubleEndedIterator<Item = (f64, f64)> + ExactSizeIterator) -> Bend {
+    /// The moments of a force per length at the nodes (N/m), and a force (N) and a moment (N m) at the end of each stretch: from the
+    /// free end on.
+    fn under(&self, density: &[f64], ends: impl DoubleEndedIterator<Item = (f64, f64)> + ExactSizeIterator) -> Moments {
         let (mut shear, mut moment) = (0.0, 0.0);
         let mut parts = Vec::with_capacity(self.stretches.len());
         let loads = density.chunks_exact(self.rule.len()).zip(ends);
@@ -100,8 +106,8 @@ impl<'a> Mesh<'a> {
             // What the load beyond each node makes there, and beyond the start.
             let summed = |values: &[f64], beyond: f64| -> (Vec<f64>, f64) {
                 let whole = rule.integral(values);
-                let at_nodes = rule.integrals(values).map(|sum| beyond + half * (whole - sum));
-                (at_nodes.collect(), beyond + half * whole)
+                let at_nodes = rule.integrals(values);
+                (at_nodes.iter().map(|sum| beyond + half * (whole - sum)).collect(), beyond + half * whole)
             };
             let (shears, moments);
             (shears, shear) = summed(density, shear);
@@ -109,27 +115,27 @@ impl<'a> Mesh<'a> {
             parts.push(moments);
         }
         parts.reverse();
-        self.bent(moment, parts.concat())
+        Moments { clamp: moment, nodes: parts.concat() }
     }
 
-    /// Under unit force at the end of so many stretches.
-    pub fn pushed(&self, stretches: usize) -> Bend {
+    /// Of unit force at the end of so many stretches.
+    pub fn pushed(&self, stretches: usize) -> Moments {
         self.loaded(stretches, (1.0, 0.0))
     }
 
-    /// Under unit moment there.
-    pub fn turned(&self, stretches: usize) -> Bend {
+    /// Of unit moment there.
+    pub fn turned(&self, stretches: usize) -> Moments {
         self.loaded(stretches, (0.0, 1.0))
     }
 
-    /// Under a force (N) and a moment (N m) there.
-    fn loaded(&self, stretches: usize, load: (f64, f64)) -> Bend {
+    /// Of a force (N) and a moment (N m) there.
+    fn loaded(&self, stretches: usize, load: (f64, f64)) -> Moments {
         let ends = (0..self.stretches.len()).map(|at| if at + 1 == stretches { load } else { (0.0, 0.0) });
         self.under(&vec![0.0; self.stretches.len() * self.rule.len()], ends)
     }
 
-    /// Under the inertia of unit acceleration, and of unit angular acceleration about the clamp.
-    pub fn shaken(&self) -> [Bend; 2] {
+    /// Of the inertia of unit acceleration, and of unit angular acceleration about the clamp.
+    pub fn shaken(&self) -> [Moments; 2] {
         let (mut start, mut places, mut ends) = (0.0, Vec::new(), Vec::new());
         for stretch in &self.stretches {
             places.extend(self.rule.nodes.iter().map(|x| start + stretch.half * (x + 1.0)));
@@ -140,36 +146,36 @@ impl<'a> Mesh<'a> {
         [moved, self.accelerated(&places, &ends)]
     }
 
-    /// Under the inertia of an acceleration of this shape.
-    pub fn swung(&self, shape: &Bend) -> Bend {
+    /// Of the inertia of an acceleration of this shape.
+    pub fn swung(&self, shape: &Bend) -> Moments {
         self.accelerated(&shape.deflection, &shape.ends)
     }
 
-    /// Under the inertia of these accelerations of the nodes (m/s2), and of the ends with angular ones (1/s2).
-    fn accelerated(&self, nodes: &[f64], ends: &[(f64, f64)]) -> Bend {
+    /// Of the inertia of these accelerations of the nodes (m/s2), and of the ends with angular ones (1/s2).
+    fn accelerated(&self, nodes: &[f64], ends: &[(f64, f64)]) -> Moments {
         let masses = self.stretches.iter().flat_map(|stretch| &stretch.mass_per_length);
         let density: Vec<_> = masses.zip(nodes).map(|(m, a)| m * a).collect();
         let ends = self.spring.parts.iter().zip(ends);
         self.under(&density, ends.map(|(at, (a, turn))| (at.mass * a, at.inertia * turn)))
     }
 
-    /// Under what unit axial compression between clamp and contact does in this shape.
-    pub fn compressed(&self, shape: &Bend) -> Bend {
+    /// Of unit axial compression between clamp and contact in this shape.
+    pub fn compressed(&self, shape: &Bend) -> Moments {
         let (at_contact, _) = shape.at_end(self.spring.before_contact);
         let nodes = self.spring.before_contact * self.rule.len();
-        let moment = shape.deflection.iter().enumerate();
-        let moment = moment.map(|(n, deflection)| if n < nodes { at_contact - deflection } else { 0.0 });
-        self.bent(at_contact, moment.collect())
+        let moments = shape.deflection.iter().enumerate();
+        let moments = moments.map(|(n, deflection)| if n < nodes { at_contact - deflection } else { 0.0 });
+        Moments { clamp: at_contact, nodes: moments.collect() }
     }
 
     /// What an axial compression (N) between clamp and contact adds to loads, of a tension as much as rounding allows; `None` if the spring
     /// buckles under it.
     pub fn compression(&self, force: f64) -> Option<Compression<'_>> {
         let count = self.rule.len();
-        let mut twice = DMatrix::from_row_slice(count, count, &self.rule.partial);
+        let mut twice = self.rule.partial.clone();
         for mut column in twice.column_iter_mut() {
-            let sums: Vec<_> = self.rule.integrals(column.as_slice()).collect();
-            column.copy_from_slice(&sums);
+            let sums = self.rule.integrals(column.as_slice());
+            column.copy_from(&sums);
         }
         let equations = self.stretches.iter().take(self.spring.before_contact).map(|stretch| {
             let mut matrix = &twice * (force * stretch.half * stretch.half);
@@ -179,8 +185,8 @@ impl<'a> Mesh<'a> {
             (matrix + DMatrix::identity(count, count)).lu()
         });
         let mut compression =
-            Compression { mesh: self, force, equations: equations.collect(), moved: Vec::new(), rest: 1.0 };
-        let (moved, deflection) = compression.moments(0.0, vec![0.0; self.stretches.len() * count], 1.0);
+            Compression { mesh: self, force, equations: equations.collect(), moved: self.none(), rest: 1.0 };
+        let (moved, deflection) = compression.moments(self.none(), 1.0);
         (compression.moved, compression.rest) = (moved, 1.0 - deflection);
         // With tension it is 1 or more, but for rounding.
         if force < 0.0 && !(0.5..STEEPEST).contains(&compression.rest) {
@@ -204,50 +210,62 @@ impl<'a> Mesh<'a> {
         (masses, lengths, ends.collect())
     }
 
-    /// Work of the moments of one shape on the curvatures of another, J.
-    fn work(&self, a: &Bend, b: &Bend) -> f64 {
-        let n = self.rule.len();
-        let moments = a.moment.chunks_exact(n).zip(b.moment.chunks_exact(n));
-        let inside = self.stretches.iter().zip(moments).map(|(stretch, (a, b))| {
-            let nodes = self.rule.weights.iter().zip(&stretch.flexibility).zip(a.iter().zip(b));
-            let works = nodes.map(|((weight, flexibility), (a, b))| weight * flexibility * a * b);
-            stretch.half * works.sum::<f64>()
+    /// How far moments turn the clamp, and the part of a stretch that each node stands for, 1.
+    fn turns(&self, moments: &Moments) -> (f64, Vec<f64>) {
+        let parts = self.stretches.iter().flat_map(|stretch| {
+            let nodes = self.rule.weights.iter().zip(&stretch.flexibility);
+            nodes.map(|(weight, flexibility)| stretch.half * weight * flexibility)
         });
-        inside.sum::<f64>() + self.spring.clamp_flexibility * a.clamp * b.clamp
+        let turns = parts.zip(&moments.nodes).map(|(part, moment)| part * moment);
+        (self.spring.clamp_flexibility * moments.clamp, turns.collect())
     }
 
-    /// The shape without its parts along others, which are orthonormal in strain energy, itself of unit energy; `None` if
-    /// nothing is left.
-    pub fn orthonormal(&self, shape: &Bend, others: &[Bend]) -> Option<Bend> {
-        let size = self.work(shape, shape).sqrt();
-        let mut left = shape.clone();
+    /// The shape under moments without its parts along others, which are orthonormal in strain energy, itself of unit energy; `None`
+    /// if nothing is left.
+    pub fn orthonormal(&self, mut moments: Moments, others: &[Bend]) -> Option<Bend> {
+        let size = moments.work(&self.turns(&moments)).sqrt();
         // Twice is enough.
         for _ in 0..2 {
+            let turns = self.turns(&moments);
             for other in others {
-                let part = self.work(&left, other);
-                left.clamp -= part * other.clamp;
-                for (own, along) in left.moment.iter_mut().zip(&other.moment) {
-                    *own -= part * along;
-                }
+                moments.add(-other.moments.work(&turns), &other.moments);
             }
         }
-        let rest = self.work(&left, &left).sqrt();
+        let rest = moments.work(&self.turns(&moments)).sqrt();
         (rest > DEPENDENT * size).then(|| {
-            left.moment.iter_mut().for_each(|moment| *moment /= rest);
-            self.bent(left.clamp / rest, left.moment)
+            moments.clamp /= rest;
+            moments.nodes.iter_mut().for_each(|moment| *moment /= rest);
+            self.bent(moments)
         })
     }
 
-    pub fn sum<'b>(&self, parts: impl Iterator<Item = (f64, &'b Bend)>) -> Bend {
-        let mut moment = vec![0.0; self.stretches.len() * self.rule.len()];
-        let mut clamp = 0.0;
+    /// The moments of the sum of shapes, each times a factor.
+    pub fn sum<'b>(&self, parts: impl Iterator<Item = (f64, &'b Bend)>) -> Moments {
+        let mut moments = self.none();
         for (factor, shape) in parts {
-            clamp += factor * shape.clamp;
-            for (sum, part) in moment.iter_mut().zip(&shape.moment) {
-                *sum += factor * part;
-            }
+            moments.add(factor, &shape.moments);
         }
-        self.bent(clamp, moment)
+        moments
+    }
+
+    /// No moments.
+    fn none(&self) -> Moments {
+        Moments { clamp: 0.0, nodes: vec![0.0; self.stretches.len() * self.rule.len()] }
+    }
+}
+
+impl Moments {
+    /// Work on what turns so far, J.
+    fn work(&self, (clamp, nodes): &(f64, Vec<f64>)) -> f64 {
+        self.clamp * clamp + dot(&self.nodes, nodes)
+    }
+
+    /// Adds a multiple of others.
+    fn add(&mut self, factor: f64, others: &Self) {
+        self.clamp += factor * others.clamp;
+        for (own, other) in self.nodes.iter_mut().zip(&others.nodes) {
+            *own += factor * other;
+        }
     }
 }
 
@@ -259,29 +277,26 @@ pub struct Compression<'a> {
     force: f64,
     /// For the moments at the nodes of each stretch up to the contact.
     equations: Vec<LU<f64, Dyn, Dyn>>,
-    /// Moments at the nodes per deflection of the contact, N.
-    moved: Vec<f64>,
+    /// Moments per deflection of the contact, N.
+    moved: Moments,
     /// What they leave of that deflection, 1: 0 at the buckling load; with tension it grows as the hyperbolic cosine.
     rest: f64,
 }
 
 impl Compression<'_> {
-    /// The spring under the loads that bend it to this shape, and the compression.
-    pub fn added(&self, shape: Bend) -> Bend {
-        let (mut moment, deflection) = self.moments(shape.clamp, shape.moment, 0.0);
-        let at_contact = deflection / self.rest.max(LEAST_REST);
-        for (moment, moved) in moment.iter_mut().zip(&self.moved) {
-            *moment += at_contact * moved;
-        }
-        self.mesh.bent(shape.clamp + self.force * at_contact, moment)
+    /// The moments of loads and the compression, from those of the loads alone.
+    pub fn added(&self, moments: Moments) -> Moments {
+        let (mut moments, deflection) = self.moments(moments, 0.0);
+        moments.add(deflection / self.rest.max(LEAST_REST), &self.moved);
+        moments
     }
 
-    /// Moments at the nodes (N m) in place of those of the loads there and at the clamp, were the contact deflected so far (m); and the
-    /// deflection that it has under them.
-    fn moments(&self, clamp: f64, mut moments: Vec<f64>, at_contact: f64) -> (Vec<f64>, f64) {
+    /// The moments in place of those of the loads, were the contact deflected so far (m); and the deflection that it has under them.
+    fn moments(&self, mut moments: Moments, at_contact: f64) -> (Moments, f64) {
         let Mesh { spring, stretches, rule } = self.mesh;
-        let mut start = (0.0, spring.clamp_flexibility * (clamp + self.force * at_contact));
-        let parts = stretches.iter().zip(&self.equations).zip(moments.chunks_exact_mut(rule.len()));
+        moments.clamp += self.force * at_contact;
+        let mut start = (0.0, spring.clamp_flexibility * moments.clamp);
+        let parts = stretches.iter().zip(&self.equations).zip(moments.nodes.chunks_exact_mut(rule.len()));
         for ((stretch, equations), moments) in parts {
             let (deflection, slope) = start;
             for (moment, x) in moments.iter_mut().zip(&rule.nodes) {
@@ -309,31 +324,23 @@ const DEPENDENT: f64 = 1e-9;
 struct Rule {
     nodes: Vec<f64>,
     weights: Vec<f64>,
-    /// Row by row: the integral to a node of what is 1 at one node and 0 at the others.
-    partial: Vec<f64>,
+    /// By rows of nodes: the integral to it of what is 1 at one node and 0 at the others.
+    partial: DMatrix<f64>,
 }
 
 impl Rule {
     fn new(count: usize) -> Self {
         let (nodes, weights): (Vec<f64>, Vec<f64>) = legendre::gauss(count).unzip();
         let values: Vec<_> = nodes.iter().map(|x| legendre::polynomials(*x, count + 1)).collect();
-        // Integral of P_k from -1 on, (P_(k+1) - P_(k-1)) / (2 k + 1), with P_-1 = -1.
-        let integrals = |at: &[f64]| -> Vec<f64> {
-            let below = [-1.0].iter().chain(at);
-            let pairs = below.zip(at.iter().skip(1)).enumerate();
-            let integrals = pairs.map(|(k, (below, above))| (above - below) / (2 * k + 1) as f64);
-            integrals.collect()
-        };
-        let partial = values.iter().flat_map(|at| {
-            let integrals = integrals(at);
-            let entry = |(weight, other): (&f64, &Vec<f64>)| {
-                let terms = integrals.iter().zip(other).enumerate();
-                let terms = terms.map(|(k, (integral, p))| (k as f64 + 0.5) * integral * p);
-                weight * terms.sum::<f64>()
-            };
-            weights.iter().zip(&values).map(entry).collect::<Vec<_>>()
-        });
-        Self { partial: partial.collect(), nodes, weights }
+        let value = |node: usize, k: usize| values.get(node).and_then(|at| at.get(k)).copied().unwrap_or_default();
+        // Integral of P_k from -1 on, (P_(k+1) - P_(k-1)) / (2 k + 1), with P_-1 = -1; times k + 1/2.
+        let below = |node: usize, k: usize| k.checked_sub(1).map_or(-1.0, |below| value(node, below));
+        let integrals = DMatrix::from_fn(count, count, |node, k| 0.5 * (value(node, k + 1) - below(node, k)));
+        let mut partial = DMatrix::zeros(count, count);
+        for ((n, weight), mut column) in weights.iter().enumerate().zip(partial.column_iter_mut()) {
+            column.gemv(*weight, &integrals, &DVector::from_fn(count, |k, _| value(n, k)), 0.0);
+        }
+        Self { nodes, weights, partial }
     }
 
     fn len(&self) -> usize {
@@ -345,12 +352,11 @@ impl Rule {
     }
 
     /// From -1 to each node.
-    fn integrals(&self, values: &[f64]) -> impl Iterator<Item = f64> {
-        let rows = self.partial.chunks_exact(self.len());
-        rows.map(move |row| dot(row, values))
+    fn integrals(&self, values: &[f64]) -> DVector<f64> {
+        &self.partial * DVectorView::from_slice(values, self.len())
     }
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    DVectorView::from_slice(a, a.len()).dot(&DVectorView::from_slice(b, b.len()))
 }

@@ -21,7 +21,7 @@ use std::iter;
 use nalgebra::{DMatrix, DVector};
 
 use crate::beam::galerkin::{Places, Space};
-use crate::beam::mesh::{Bend, Mesh, dot};
+use crate::beam::mesh::{Bend, Mesh, Moments, dot};
 use crate::beam::pieces::Pieces;
 use crate::beam::section::Section;
 
@@ -31,7 +31,7 @@ const STATIC_SHAPES: usize = 20;
 /// The uniform spring of the same mass that deflects and turns as much at its end under a force there.
 pub fn equivalent(spring: &Pieces) -> Section {
     let mesh = Mesh::new(spring, 1);
-    let (deflection, slope) = mesh.pushed(spring.before_contact).at_end(spring.before_contact);
+    let (deflection, slope) = mesh.bent(mesh.pushed(spring.before_contact)).at_end(spring.before_contact);
     let length = 1.5 * deflection / slope;
     Section {
         length,
@@ -55,9 +55,9 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
     let (contact, end) = (spring.before_contact, spring.parts.len());
     let pushed = pushed_under(&mesh, section, axial_force)?;
     let compression = if axial_force == 0.0 { None } else { Some(mesh.compression(axial_force)?) };
-    let under = |shape: Bend| match &compression {
-        Some(compression) => compression.added(shape),
-        None => shape,
+    let under = |moments: Moments| match &compression {
+        Some(compression) => compression.added(moments),
+        None => moments,
     };
     let [moved, turned] = mesh.shaken();
     let mut starts = vec![moved, mesh.turned(end), turned];
@@ -82,8 +82,8 @@ fn static_shapes(mesh: &Mesh) -> Vec<Bend> {
     krylov(mesh, None, starts.collect(), |shape| mesh.compressed(shape), STATIC_SHAPES)
 }
 
-/// The shape under unit contact force and an axial compression (N).
-fn pushed_under(mesh: &Mesh, section: &Section, axial_force: f64) -> Option<Bend> {
+/// The moments of unit contact force and an axial compression (N).
+fn pushed_under(mesh: &Mesh, section: &Section, axial_force: f64) -> Option<Moments> {
     if axial_force == 0.0 {
         return Some(mesh.pushed(mesh.spring.before_contact));
     }
@@ -96,18 +96,18 @@ fn pushed_under(mesh: &Mesh, section: &Section, axial_force: f64) -> Option<Bend
 /// Up to `count` orthonormal shapes: one from which nothing follows, if any, the starts, then in turn what follows from each.
 fn krylov(
     mesh: &Mesh,
-    barren: Option<Bend>,
-    starts: Vec<Bend>,
-    next: impl Fn(&Bend) -> Bend,
+    barren: Option<Moments>,
+    starts: Vec<Moments>,
+    next: impl Fn(&Bend) -> Moments,
     count: usize,
 ) -> Vec<Bend> {
     let mut waiting = VecDeque::from(starts);
     let mut found = Vec::with_capacity(count);
-    found.extend(barren.and_then(|shape| mesh.orthonormal(&shape, &[])));
+    found.extend(barren.and_then(|moments| mesh.orthonormal(moments, &[])));
     while found.len() < count
-        && let Some(shape) = waiting.pop_front()
+        && let Some(moments) = waiting.pop_front()
     {
-        if let Some(shape) = mesh.orthonormal(&shape, &found) {
+        if let Some(shape) = mesh.orthonormal(moments, &found) {
             waiting.push_back(next(&shape));
             found.push(shape);
         }

@@ -35,9 +35,12 @@ const SHARED: [(&str, &str); 11] = [
     ("FLOATING", "armature.corePosition=1e-3 armature.gapConstant=1e-3 armature.returnForce=0"),
 ];
 
+/// From what is critical so far, m: thousands of roundings, which depend on everything.
+const BARELY: f64 = 1e-15;
+
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold that
-/// is critical is the resistance at rest; an overtravel or a pusher that is critical closes the contact or touches without
-/// force.
+/// is critical is the resistance at rest; with an overtravel that is critical the contact is about to close, with a pusher that is, it
+/// has just touched.
 const SCENES: &str = "\
 PLAIN
 effects.axialForce=2
@@ -73,6 +76,7 @@ ON_SPRING RUBBING PULLED ALL_COUNT effects.axialForce=4 beam.axialForce=1 chatte
 PRESSED OPEN pusher.displacement=3e-4 RUBBING PULLED ALL_COUNT effects.axialForce=4 beam.axialForce=1 \
     chatter.resistanceThreshold=critical
 PRESSED PULLED RUBBING effects.axialForce=4 beam.axialForce=1 pusher.displacement=critical
+PRESSED PULLED effects.axialForce=4 beam.axialForce=-1 pusher.displacement=critical
 MOVED OPEN PULLED RUBBING ALL_COUNT effects.axialForce=4 beam.axialForce=1 chatter.resistanceThreshold=critical
 MOVED OPEN FLOATING RUBBING ALL_COUNT chatter.resistanceThreshold=critical
 MOVED OPEN armature.holdForce=2 FLOATING ON_SPRING
@@ -144,13 +148,13 @@ impl Known {
                 "contact.overtravel" if value.is_nan() => {
                     // The same distance further than where the contact is open.
                     known.scene.contact.overtravel = -1e-3;
-                    -1e-3 - known.at_rest(RealOutput::ContactIndentation)
+                    -BARELY - 1e-3 - known.at_rest(RealOutput::ContactIndentation)
                 }
                 "pusher.displacement" if value.is_nan() => {
                     // Where it touches without force.
                     known.inputs.pusher_displacement = -1e-3;
                     let simulation = Simulation::new(&known.scene, &known.inputs, 0.0).unwrap();
-                    -1e-3 - simulation.model().preload.pusher_overlap
+                    BARELY - 1e-3 - simulation.model().preload.pusher_overlap
                 }
                 _ => value,
             };

@@ -78,7 +78,6 @@ impl<const S: usize> Whole<'_, S> {
             && model.links.iter().all(|link| link.contact().is_some())
             && model.modes.first().is_some_and(|slowest| slowest.omega_squared > 0.0);
         match (model.ports.len(), moving.axial.is_empty()) {
-            (1, true) if flies => compiled_for!(model.simd, A => self.compute::<1, A>(moving, at, flies, ends)),
             (1, true) => compiled_for!(model.simd, A => self.compute::<2, A>(moving, at, flies, ends)),
             _ => compiled_for!(model.simd, A => self.compute::<MOST_LOADS, A>(moving, at, flies, ends)),
         }
