@@ -30,5 +30,6 @@ mod refused;
 mod resistance;
 mod scene_file;
 mod second;
+mod similarity;
 mod spring;
 mod stack;

@@ -140,9 +140,10 @@ pub const SHORTEST_FLIGHT: f64 = 1e-3;
 /// `what_is_read_inside_the_integrators_steps_is_within_the_tolerance`.
 pub const AT_EVENT: f64 = 0.01;
 
-/// Length from which on a step is counted by the force that the deviation makes in it, s. A communication point is hardly ever nearer
-/// to the instant of a closing, at which a wrong instant is a wrong force. Chosen.
-pub const SEEN: f64 = 1e-9;
+/// Length from which on a step is counted by the force that the deviation makes in it, per radian of the lowest mode, 1: a nanosecond of
+/// the specimen. A communication point is hardly ever nearer to the instant of a closing, at which a wrong instant is a wrong force.
+/// Chosen.
+pub const SEEN: f64 = 2e-6;
 
 /// Distance beyond which the other contact is not looked for in a step of flight, in ways of the tip at its nodes and at the
 /// fastest velocity there, 1. What swings unseen between so many nodes is no larger. Pinned: negative, `tests/second`.

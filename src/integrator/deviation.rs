@@ -126,7 +126,7 @@ pub(crate) fn advance<const S: usize>(model: &Model, state: &mut State, trial: &
     if let Some(port) = model.port_of(CONTACT) {
         error.disturb(port, trial.slow_error * length);
     }
-    if length > SEEN {
+    if length > SEEN * model.memory {
         let conducting = links().filter(|(link, _)| link.circuit.is_some());
         let most = conducting.fold(0.0_f64, |most, (_, nodes)| most.max(end(&nodes.deviation).abs()));
         error.note_deviation(most, model.force_scale);
