@@ -158,12 +158,9 @@ def test_no_cell_of_the_report_is_wider_than_its_column(report: Page) -> None:
     assert report.eval_on_selector_all("td, th", wide) == []
 
 
-def test_the_report_is_no_wider_than_its_window(report: Page) -> None:
-    assert report.evaluate("document.documentElement.scrollWidth <= innerWidth")
-
-
-def test_the_documentation_is_no_wider_than_its_window(documentation: Page) -> None:
-    assert documentation.evaluate("document.documentElement.scrollWidth <= innerWidth")
+def test_no_page_is_wider_than_its_window(report: Page, documentation: Page) -> None:
+    for page in (report, documentation):
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), page.url
 
 
 def test_the_block_shows_every_input_and_output_apart(documentation: Page) -> None:
