@@ -450,7 +450,7 @@ def test_draws_that_fail_at_rest_leave_the_others_their_interval() -> None:
 
 @pytest.mark.parametrize("seed", [1, 6, 7])
 def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) -> None:
-    """The surface alone is up to 5 % off at the lower end."""
+    """The surface alone is up to 2.5 % off at the lower end."""
     position = recorded(seed)
     (test,), relay = position.tests, position.relay
     surface = position.surfaces[test.name]
