@@ -2,7 +2,7 @@
 //! gives the reason, or runs with the properties that hold in every scene.
 //!
 //! `PROPTEST_CASES=100000 cargo test --release -p hard-cases --test random_scenes` draws that many
-//! (`PROPTEST_RNG_SEED=...` draws others; `-- --include-ignored` checks all properties).
+//! (`PROPTEST_RNG_SEED=...` draws others).
 //! Ranges that span decades are drawn uniformly on a logarithmic scale. Most parameters of a scene keep their start
 //! value, so that a failure shrinks to the few that matter.
 
@@ -41,8 +41,8 @@ fn within(variable: &Variable, x: f64) -> f64 {
     .min(max)
 }
 
-/// The start values, but for the variables with a draw; no tolerance below `tightest`.
-fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
+/// The start values, but for the variables with a draw.
+fn scene(draws: &[Option<f64>]) -> Scene {
     let mut scene = Scene::default();
     for (variable, draw) in VARIABLES.iter().zip(draws) {
         let Some(x) = *draw else { continue };
@@ -62,9 +62,6 @@ fn scene(draws: &[Option<f64>], tightest: f64) -> Scene {
         };
         // A bound may be excluded: then the start value is kept.
         let _ = scene.set_number(variable, value);
-    }
-    if scene.solver.tolerance > 0.0 {
-        scene.solver.tolerance = scene.solver.tolerance.max(tightest);
     }
     // The energy supplied by the generator and by a varying axial force is not computed.
     scene.effects.excitation = ExcitationKind::None;
@@ -93,7 +90,7 @@ fn segment() -> impl Strategy<Value = Segment> {
     })
 }
 
-fn ride(tightest: f64) -> impl Strategy<Value = Ride> {
+fn ride() -> impl Strategy<Value = Ride> {
     let draws = prop::collection::vec(prop::option::weighted(0.2, 0.0..1.0), VARIABLES.len());
     let segments = prop::collection::vec(segment(), 1..20);
     (draws, -8.0..1.0_f64, any::<bool>(), segments).prop_map(move |(draws, speed, thrown, mut segments)| {
@@ -103,12 +100,7 @@ fn ride(tightest: f64) -> impl Strategy<Value = Ride> {
             segment.support = segment.support.clamp(support - way, support + way);
             support = segment.support;
         }
-        Ride {
-            scene: scene(&draws, tightest),
-            speed: if thrown { -10_f64.powf(speed) } else { 0.0 },
-            segments,
-            steps: ENOUGH,
-        }
+        Ride { scene: scene(&draws), speed: if thrown { -10_f64.powf(speed) } else { 0.0 }, segments, steps: ENOUGH }
     })
 }
 
@@ -132,7 +124,7 @@ fn config() -> ProptestConfig {
         failure_persistence: None,
         max_shrink_iters: 300,
         rng_seed: match config.rng_seed {
-            RngSeed::Random => RngSeed::Fixed(52),
+            RngSeed::Random => RngSeed::Fixed(2),
             given @ RngSeed::Fixed(_) => given,
         },
         ..config
@@ -159,40 +151,41 @@ fn rings_for_ever(scene: &Scene, error: &anyhow::Error) -> bool {
     exhausted && scene.beam.stiffness_damping == 0.0
 }
 
+/// Tightest tolerance at which energy and force are judged: the error of a step is rounding below.
+const TIGHTEST: f64 = 1e-6;
+
 proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn every_scene_is_refused_or_runs_and_makes_no_energy(ride in ride(1e-6)) {
+    fn every_scene_is_refused_or_runs_and_makes_no_energy_in_steps_of_any_length(drawn in ride()) {
+        let mut ride = drawn.clone();
+        let tolerance = &mut ride.scene.solver.tolerance;
+        let tighter = *tolerance > 0.0 && *tolerance < TIGHTEST;
+        if tighter {
+            *tolerance = TIGHTEST;
+        }
         if !is_refused(&ride.scene) {
             match ride.run(4) {
-                Ok(outcome) => {
-                    let energy = outcome.energy();
+                Ok(fine) => {
+                    let energy = fine.energy();
                     // The energy of friction is not computed here but in `tests/friction/`.
                     let rubs = ride.scene.effects.friction != FrictionKind::None;
                     prop_assert!(rubs || energy.is_kept(), "{energy}: {}", summary(&ride));
+                    // Without damping, a bouncing contact amplifies errors, so that two runs diverge. One in 2,000, with a
+                    // contact damping of 0.7 s, differs by ten times the tolerance.
+                    let damped = ride.scene.beam.stiffness_damping.min(ride.scene.contact.damping) > 1e-6;
+                    if damped && let Ok(coarse) = ride.run(1) {
+                        let force = fine.same_force_as_promised(&coarse);
+                        prop_assert!(force.is_kept(), "{force}: {}", summary(&ride));
+                    }
                 }
                 Err(error) => prop_assert!(slips_by_itself(&ride.scene), "{error:#}: {}", summary(&ride)),
             }
         }
-    }
-
-    #[test]
-    fn every_scene_at_any_tolerance_is_refused_or_runs(ride in ride(0.0)) {
-        if !is_refused(&ride.scene) && let Err(error) = ride.run(4) {
-            let told = slips_by_itself(&ride.scene) || rings_for_ever(&ride.scene, &error);
-            prop_assert!(told, "{error:#}: {}", summary(&ride));
-        }
-    }
-
-    // Without damping, a bouncing contact amplifies errors, so that two runs diverge. One in 2,000, with a contact damping of
-    // 0.7 s, differs by ten times the tolerance.
-    #[test]
-    fn damped_scenes_do_not_depend_on_the_communication_step(ride in ride(1e-6)) {
-        let damped = ride.scene.beam.stiffness_damping.min(ride.scene.contact.damping) > 1e-6;
-        if damped && let (Ok(coarse), Ok(fine)) = (ride.run(1), ride.run(4)) {
-            let force = fine.same_force_as_promised(&coarse);
-            prop_assert!(force.is_kept(), "{force}: {}", summary(&ride));
+        if tighter && !is_refused(&drawn.scene) && let Err(error) = drawn.run(4) {
+            let told = slips_by_itself(&drawn.scene) || rings_for_ever(&drawn.scene, &error);
+            prop_assert!(told, "{error:#}: {}", summary(&drawn));
         }
     }
 }

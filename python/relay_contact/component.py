@@ -480,9 +480,9 @@ class Contact:
         rates: list[float] = self.fmu.getRealOutputDerivatives(self.references(*names), [1] * len(names))
         return rates
 
-    def initialise(self, tolerance: float | None = None) -> None:
+    def initialise(self) -> None:
         """Go through the initialisation at time 0."""
-        self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
+        self.fmu.setupExperiment()
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
 

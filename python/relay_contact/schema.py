@@ -116,14 +116,15 @@ def entries(model: Any, place: Place) -> list[str]:  # noqa: ANN401
 def line(path: Path, place: Place) -> int:
     """Return the line in which an entry begins, or what it is missing in: the first with which the file has it."""
     lines = path.read_text(encoding="utf-8-sig").split("\n")
-
-    def holds(count: int) -> bool:
-        table: Any = {}
+    ends = [0]
+    for end in range(1, len(lines) + 1):
         # An entry may have several lines.
-        for end in range(count, len(lines) + 1):
-            with suppress(tomllib.TOMLDecodeError):
-                table = tomllib.loads("\n".join(lines[:end]))
-                break
+        with suppress(tomllib.TOMLDecodeError):
+            tomllib.loads("\n".join(lines[ends[-1] : end]))
+            ends.append(end)
+
+    def holds(end: int) -> bool:
+        table: Any = tomllib.loads("\n".join(lines[:end]))
         with suppress(KeyError, IndexError, TypeError):
             for key in place:
                 table = table[key]
@@ -132,7 +133,7 @@ def line(path: Path, place: Place) -> int:
 
     while not holds(len(lines)):
         place = place[:-1]
-    return max(bisect_left(range(len(lines) + 1), True, key=holds), 1)
+    return ends[max(bisect_left(ends, True, key=holds) - 1, 0)] + 1
 
 
 @contextmanager

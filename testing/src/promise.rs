@@ -50,6 +50,13 @@ fn reference(relay: &Relay, part: f64, stronger: f64) -> Option<Course> {
     }
 }
 
+/// A relay, and its reference at a `part` of its tolerance, or at the tightest if that is 0; `None` if it has none.
+pub fn beside_reference(relay: &Relay, part: f64) -> Option<(Course, Course)> {
+    let expected = reference(relay, part, 0.0)?;
+    let Ok((course, None)) = relay.run(|_| {}) else { panic!("does not run: {relay:?}") };
+    Some((course, expected))
+}
+
 /// The reference of a relay beside itself in communication steps of a quarter.
 #[derive(Clone, Copy, Debug)]
 pub struct Disagreement {
@@ -78,11 +85,10 @@ pub fn compare(number: u64, draw: fn(u64) -> Relay) -> Option<Disagreement> {
     let whole = reference(&relay, 0.0, 0.0)?;
     relay.parts = 4;
     let parts = reference(&relay, 0.0, 0.0)?;
-    let (force, extremes) = parts.error(&whole);
     Some(Disagreement {
         number,
         kind: relay.kind,
-        difference: force.max(extremes),
+        difference: parts.error(&whole),
         events: [whole.events.len(), parts.events.len()],
         estimate: whole.estimate.max(parts.estimate),
     })
@@ -122,20 +128,16 @@ pub fn judge(number: u64, draw: fn(u64) -> Relay, part: f64) -> Judged {
         estimate: 0.0,
         outcome: Outcome::NotRun,
     };
-    let Some(expected) = reference(&relay, part, 0.0) else { return judged };
-    let Ok((course, None)) = relay.run(|_| {}) else {
-        panic!("relay {number} does not run");
-    };
-    let larger = |(force, extremes): (f64, f64)| force.max(extremes);
+    let Some((course, expected)) = beside_reference(&relay, part) else { return judged };
     judged.opens = expected.opens();
     judged.estimate = course.estimate;
-    judged.error = larger(course.error(&expected));
+    judged.error = course.error(&expected);
     judged.instants = course.error_of_instants(&expected);
     judged.outcome = if judged.error <= tolerance {
         Outcome::Kept
     } else {
         match reference(&relay, part, OF_A_STEP * tolerance) {
-            Some(changed) if larger(changed.error(&expected)) > tolerance => Outcome::IllConditioned,
+            Some(changed) if changed.error(&expected) > tolerance => Outcome::IllConditioned,
             _ => Outcome::Above,
         }
     };

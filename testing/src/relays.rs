@@ -327,22 +327,21 @@ impl Course {
         !self.events.is_empty() || first.copied().any(|force| force <= 0.0)
     }
 
-    /// The largest errors of the force and of its extremes, relative to the larger of force scale and largest force so
-    /// far in the reference.
-    pub fn error(&self, reference: &Self) -> (f64, f64) {
-        let mut scale = reference.scale;
-        let (mut force, mut extremes) = (0.0_f64, 0.0_f64);
+    /// The largest error of the force and its extremes, relative to the larger of force scale and largest force so far in the
+    /// reference.
+    pub fn error(&self, reference: &Self) -> f64 {
+        let (mut scale, mut error) = (reference.scale, 0.0_f64);
         for (k, greatest) in reference.greatest.iter().enumerate() {
             scale = scale.max(*greatest);
             let difference = |own: &[f64], other: &[f64]| match (own.get(k), other.get(k)) {
                 (Some(a), Some(b)) => (a - b).abs() / scale,
                 _ => f64::INFINITY,
             };
-            force = force.max(difference(&self.force, &reference.force));
-            extremes = extremes.max(difference(&self.least, &reference.least));
-            extremes = extremes.max(difference(&self.greatest, &reference.greatest));
+            error = error.max(difference(&self.force, &reference.force));
+            error = error.max(difference(&self.least, &reference.least));
+            error = error.max(difference(&self.greatest, &reference.greatest));
         }
-        (force, extremes)
+        error
     }
 
     /// The largest error of an instant of opening or closing, s; `None` if there are more or fewer of them.

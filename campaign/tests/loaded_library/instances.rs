@@ -55,7 +55,7 @@ fn run(api: &Api, number: u32) -> Vec<u64> {
     let mut judge = Judge::new(api);
     let mut bits = Vec::new();
     judge.run(&Call::shaken(400.0 + f64::from(number))).unwrap();
-    for k in 0..200 {
+    for k in 0..80 {
         let input = (DESCRIPTION.reference("base.acceleration"), f64::from(k % 7));
         judge.run(&[Call::set_reals(vec![input]), Call::step(1.7e-5)]).unwrap();
         bits.extend(judge.life.now.outputs.iter().flatten());
