@@ -242,7 +242,6 @@ impl<'a> Pressed<'a> {
     fn with(&self, parallel: f64) -> Result<Preload, SceneError> {
         let Self { law, give, .. } = *self;
         let total_overtravel = self.overtravel - give * parallel;
-        let loaded = |force: f64, n: f64| self.loaded([force, parallel], n);
         let rests = |force: f64, deflection: f64, n: f64| Preload {
             force,
             deflection,
@@ -252,7 +251,7 @@ impl<'a> Pressed<'a> {
             pusher_overlap: self.press([force, parallel], n).1,
             ..Preload::default()
         };
-        let alone = free_deflection(|n| loaded(0.0, n), &|y| self.axial(y));
+        let alone = self.alone(parallel)?;
         if total_overtravel <= alone {
             let axial_force = self.axial(alone);
             self.check_buckling(axial_force)?;
@@ -264,7 +263,7 @@ impl<'a> Pressed<'a> {
         let residual = |d: f64| {
             let (y, n) = (deflection(d), self.axial(deflection(d)));
             let force = law.elastic_force(d);
-            force - (y - loaded(force, n)) / self.compliance(n)
+            force - (y - self.loaded([force, parallel], n)) / self.compliance(n)
         };
         // No sign change: the spring exerts no force on the contact, it has buckled under its own deflection.
         let Some(indentation) = roots::bracketed(residual, 0.0, total_overtravel - alone) else {
@@ -279,6 +278,30 @@ impl<'a> Pressed<'a> {
             contact_stiffness: law.stiffness(indentation),
             ..rests(force, deflection, axial_force)
         })
+    }
+
+    /// Deflection of the tip without contact under this force of a parallel one (N), m: that of its loads under an axial force that may
+    /// depend on it, as `N` grows with the square of `y`. A spring that bends further and further is refused if it leaves the contact; one
+    /// that is stopped by it is as far as it came.
+    fn alone(&self, parallel: f64) -> Result<f64, SceneError> {
+        let length = self.springs.moving.statics.section.length;
+        let mut y = 0.0;
+        for _ in 0..1000 {
+            let n = self.axial(y);
+            match self.check_buckling(n) {
+                Err(_) if y < 0.0 => return Ok(y),
+                buckled => buckled?,
+            }
+            let next = self.loaded([0.0, parallel], n);
+            if (next - y).abs() <= f64::EPSILON * next.abs() || y < -length {
+                return Ok(next);
+            }
+            if y > length {
+                break;
+            }
+            y = next;
+        }
+        Err(not_finite(RealOutput::PreloadIndentation, self.overtravel - y))
     }
 
     /// Refuses friction under which the spring gives way more than it presses back, at an axial force (N), and a spring that has
@@ -306,20 +329,6 @@ impl<'a> Pressed<'a> {
             initial: friction.initial,
         })
     }
-}
-
-/// Deflection of the tip without contact, m: that of its loads under an axial force (N), which may depend on it; this feedback is
-/// weak (N grows with the square of y), so the fixed-point iteration converges fast.
-fn free_deflection(loaded: impl Fn(f64) -> f64, axial: &impl Fn(f64) -> f64) -> f64 {
-    let mut y = 0.0;
-    for _ in 0..50 {
-        let next = loaded(axial(y));
-        if next == y {
-            break;
-        }
-        y = next;
-    }
-    y
 }
 
 fn not_finite(output: RealOutput, value: f64) -> SceneError {

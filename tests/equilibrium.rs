@@ -175,3 +175,32 @@ fn contacts_that_close_gently_rest_in_the_equilibrium_with_friction() {
         agree(&scene, (1.5e-4, 2e-5, 0.0), 2e-3);
     }
 }
+
+/// Under its own axial force a spring leaves the contact until nothing holds it, and is refused from there on; one that is pressed onto the
+/// contact stands any acceleration.
+#[test]
+fn a_spring_under_great_accelerations_rests_or_is_refused() {
+    let mut scene = scene(-1e-2, &[]);
+    scene.effects.axial_force = AxialForceKind::FromPreload;
+    scene.solver.modes = 4;
+    let mut rests = |gravity: f64, overtravel: f64| {
+        (scene.environment.gravity, scene.contact.overtravel) = (gravity, overtravel);
+        Model::new(&scene, 0.0).ok().map(|model| (model.preload.force, model.preload.indentation))
+    };
+    let accelerations = (0..200).map(|k| 9e3 * 1.005_f64.powi(k));
+    let (mut force, mut indentation) = (0.0, 0.0);
+    let mut alone = Vec::new();
+    for acceleration in accelerations {
+        let (pressed, _) = rests(acceleration, 1e-4).unwrap();
+        assert!(pressed > force, "{acceleration} m/s2: {pressed} N");
+        force = pressed;
+        let left = rests(-acceleration, -1e-2);
+        if let Some((_, left)) = left {
+            assert!(left < indentation, "{acceleration} m/s2: {left} m");
+            indentation = left;
+        }
+        alone.push(left.is_some());
+    }
+    // At 1.06e4 m/s2.
+    assert!((30..40).contains(&alone.partition_point(|rests| *rests)) && alone.is_sorted_by(|a, b| a >= b));
+}
