@@ -235,6 +235,10 @@ impl<'a> Pressed<'a> {
             return Err(not_finite(RealOutput::ParallelForce, above.1));
         };
         let force = law.elastic_force(indentation);
+        // What is no root but a jump is no equilibrium.
+        if excess(indentation).abs() > 1e-6 * open {
+            return Err(not_finite(RealOutput::ParallelForce, force));
+        }
         Ok(Preload { parallel_force: force, parallel_indentation: indentation, ..self.with(force)? })
     }
 
@@ -285,7 +289,7 @@ impl<'a> Pressed<'a> {
     /// that is stopped by it is as far as it came.
     fn alone(&self, parallel: f64) -> Result<f64, SceneError> {
         let length = self.springs.moving.statics.section.length;
-        let mut y = 0.0;
+        let (mut y, mut last) = (0.0, f64::INFINITY);
         for _ in 0..1000 {
             let n = self.axial(y);
             match self.check_buckling(n) {
@@ -293,15 +297,17 @@ impl<'a> Pressed<'a> {
                 buckled => buckled?,
             }
             let next = self.loaded([0.0, parallel], n);
-            if (next - y).abs() <= f64::EPSILON * next.abs() || y < -length {
+            let change = (next - y).abs();
+            // To rounding.
+            if change <= f64::EPSILON * next.abs() || last <= change && change < 1e-9 * next.abs() || y < -length {
                 return Ok(next);
             }
             if y > length {
                 break;
             }
-            y = next;
+            (y, last) = (next, change);
         }
-        Err(not_finite(RealOutput::PreloadIndentation, self.overtravel - y))
+        if y < 0.0 { Ok(y) } else { Err(not_finite(RealOutput::PreloadIndentation, self.overtravel - y)) }
     }
 
     /// Refuses friction under which the spring gives way more than it presses back, at an axial force (N), and a spring that has
