@@ -434,6 +434,9 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     # The spring is off its contact.
     nothing = found(ring, parameters=["contact.overtravel"])
     assert "the data hardly depend on it" in nothing.missing["contact.overtravel"]
+    # Nor does one without any scatter.
+    exact = asked(tmp_path, measured.record(0.25, 1e4, 0.0, SEED)[1:])
+    assert len(exact.missing.keys() & set(names[:2])) == 1
     # With the true mass the frequency tells the stiffness: of a beam with a rivet, by the exact solution.
     relay = tmp_path / "relay.toml"
     relay.write_text(
