@@ -66,6 +66,8 @@ def test_an_input_course_is_linear_between_its_points() -> None:
         ({"friction_coefficient": 0.3}, ["friction.coefficient = 0.3: not used without effects.friction = Coulomb"]),
         # Who says so knows it.
         ({"friction_coefficient": 0.3, "effects_friction": "None"}, []),
+        # Of the first contact, too.
+        ({"second_minimumDuration": 1e-5}, []),
     ],
 )
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
