@@ -122,6 +122,9 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
     names = []
     others = []
     for each in READERS.get(path.suffix.lower(), text)(path):
+        if isinstance(each.values, np.ndarray) and not np.issubdtype(each.values.dtype, np.number):
+            # Texts beside the record.
+            continue
         name, own = each.name, each.unit
         names.append(name)
         known = spelled(own) or spelled(unit)
@@ -215,12 +218,11 @@ def mdf(path: Path) -> Iterator[Channel]:
     """Read a file of ASAM MDF."""
     with asked("asammdf", path).MDF(path) as file:
         for signal in file.iter_channels():
-            if np.issubdtype(np.asarray(signal.samples).dtype, np.number):
-                time = signal.timestamps if signal.group_index in file.masters_db else None
-                bits = signal.invalidation_bits
-                bad = False if bits is None else np.asarray(bits)
-                clock = MASTERS[signal.master_metadata[1]]
-                yield Channel(signal.name, signal.unit, time, signal.samples, clock, bad)
+            time = signal.timestamps if signal.group_index in file.masters_db else None
+            bits = signal.invalidation_bits
+            bad = False if bits is None else np.asarray(bits)
+            clock = MASTERS[signal.master_metadata[1]]
+            yield Channel(signal.name, signal.unit, time, signal.samples, clock, bad)
 
 
 def uff(path: Path) -> Iterator[Channel]:
