@@ -636,6 +636,14 @@ def test_a_gauge_at_the_fixed_contact_shows_the_force_of_both_twin_contacts(tmp_
     relay.write_text("".join(f"parameters.{each}\n" for each in twins) + relay.read_text())
     result = found(data, relay=relay, parameters=["beam.youngsModulus"])
     assert result["beam.youngsModulus"].value == pytest.approx(1.15e11, rel=1e-6)
+    # The stiffness of a spring file whose segments have the modulus of the relay is written, too.
+    (tmp_path / "strip.toml").write_text("[[segment]]\nlength = 18e-3\nwidth = 5e-3\nthickness = 0.22e-3\n")
+    relay.write_text(f"parameters.beam.file = 'strip.toml'\n{relay.read_text()}")
+    result = found(data, relay=relay, parameters=["spring.stiffness"], out=tmp_path / "found")
+    assert result["spring.stiffness"].value == pytest.approx(1.15 / 1.1, rel=1e-6)
+    written = Relay.read(tmp_path / "found/relay.toml", COMPONENT).positions["on"]
+    uniform: Values = {**written, "beam.file": "", "beam.youngsModulus": 1.15e11}
+    assert resting(written, "contact.force") == pytest.approx(resting(uniform, "contact.force"), rel=1e-6)
 
 
 def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel(tmp_path: Path) -> None:
@@ -693,6 +701,8 @@ def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> N
     for asked, message in (
         ({"parameters": ["tip.mas"]}, "tip.mas: no such variable; did you mean tip.mass"),
         ({"parameters": ["spring.thickness"]}, "spring.thickness: no such entry in the spring file"),
+        # Which would be written nowhere.
+        ({"parameters": ["spring.stiffness"]}, "spring.stiffness: no such entry in the spring file.*youngsModulus"),
         ({"parameters": ["beam.massDamping"]}, "beam.massDamping = 0 in the relay's file: not allowed"),
         ({"relay": ROOT / "none.toml"}, "no such file, and no relay of this name"),
     ):
