@@ -665,6 +665,13 @@ def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel
     assert result["beam.youngsModulus"].value == pytest.approx(1.15e11, rel=1e-6)
     low, high = result["contact.overtravel"].interval
     assert low <= result["contact.overtravel"].value <= high
+    # What the table of the pusher has stays there.
+    truth = tmp_path / "truth.toml"
+    text = relay.read_text().replace("1.45e-3", "1.4e-3").replace("110000000000.0", "1.15e11")
+    truth.write_text(text.replace("12e-3", "12.1e-3"))
+    found(data, relay=truth, parameters=["pusher.position"], out=tmp_path / "found")
+    written = Relay.read(tmp_path / "found/truth.toml", COMPONENT)
+    assert written.positions["on"]["pusher.position"] == pytest.approx(12e-3, rel=1e-5)
     # A pusher that touches the lifted spring changes what rings.
     write_table(ring, "time,displacement", np.column_stack([np.arange(20), np.sin(np.arange(20))]))
     with pytest.raises(RelayContactError, match=r"ring.csv:1: which position of the coil"):

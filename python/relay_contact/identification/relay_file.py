@@ -13,6 +13,7 @@ from tomlkit.items import InlineTable
 from relay_contact.component import Component
 from relay_contact.files import write_at_once
 from relay_contact.identification.result import Found, Identification, has
+from relay_contact.qualification.relay import TABLES
 from relay_contact.schema import leaves
 from relay_contact.spring import PREFIX, SPRING_FILES, STIFFNESS, text_of
 
@@ -80,7 +81,8 @@ def text(result: Identification, spring: str, folder: Path) -> str:
         if not name.startswith(PREFIX):
             remark = f"identified, ± {100 * each.half:.2g} %; was {each.unknown.start:g}"
             own = [tables[place] for place in each.unknown.positions if has(tables[place], name)]
-            for table in [place["parameters"] for place in own] or [content["parameters"]]:
+            whole = content if name.partition(".")[0] in TABLES else content["parameters"]
+            for table in [place["parameters"] for place in own] or [whole]:
                 put(table, name, number(each.value, each.half), remark)
         widest = max((other for other in result.found if other.unknown.name == name), key=lambda other: other.half)
         put(content["uncertainty"], name, uncertainty(widest), "identified")
