@@ -42,8 +42,11 @@ def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: AN
     """Set an entry of a table of a file by its dotted name, with a remark behind it."""
     if remark:
         item.comment(remark)
-    path = name.split(".")
+    path = [name] if name in table else name.split(".")
     for number, key in enumerate(path):
+        if isinstance(table, InlineTable):
+            # A remark would end the line of all of it.
+            item.trivia.comment = ""
         if key not in table and isinstance(table, OutOfOrderTableProxy):
             # The lines of this table do not follow each other: to the first of them.
             table[tomlkit.key(path[number:])] = item
