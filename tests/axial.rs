@@ -10,6 +10,18 @@ use testing::scenes::shaken;
 use crate::equilibrium::bent;
 
 #[test]
+fn modes_far_apart_have_a_lowest_frequency() {
+    // The search for it never ended.
+    let mut scene = shaken(0.0, 700.0);
+    bent(&mut scene);
+    scene.beam.width = 1e-4;
+    scene.tip.rotary_inertia = 6.120_750_139_409_706e-5;
+    scene.solver.modes = 92;
+    let simulation = Simulation::new(&scene, &Inputs::default(), 0.0).unwrap();
+    assert!(simulation.real(RealOutput::PreloadFrequency) > 0.0);
+}
+
+#[test]
 fn violence_ends_in_a_motion_or_in_an_error_with_its_time() {
     for (length, thickness, amplitude) in
         [(12.5e-3, 1.19e-4, 1e3), (12.5e-3, 1.19e-4, 1e5), (12.5e-3, 1e-5, 1e6), (15.5e-3, 1e-4, 1e6)]

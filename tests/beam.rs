@@ -33,10 +33,10 @@ fn published_eigenvalues_of_the_plain_beam() {
 fn exact_frequencies_agree_with_galerkin() {
     for (tip_mass, tip_inertia) in [(0.0, 0.0), (0.3, 0.0), (0.0, 0.02), (2.0, 0.1)] {
         let section = Section { tip_mass, tip_inertia, ..UNIT };
-        for axial_force in [-30.0, -1.0, 0.0, 1e-4, 1.0, 2.4] {
+        for axial_force in [-1500.0, -30.0, -1.0, 0.0, 1e-4, 1.0, 2.4] {
             for support in [0.0, 1.0, 5000.0, 1e7] {
                 let exact = reference::frequencies(&section, axial_force, support, 4);
-                let galerkin = Space::new(24).modes(&section, axial_force, support);
+                let galerkin = Space::new(40).modes(&section, axial_force, support);
                 assert_eq!(exact.len(), 4);
                 for (exact, mode) in exact.iter().zip(&galerkin.unwrap()) {
                     let of = format!("m {tip_mass} J {tip_inertia} N {axial_force} k {support}");

@@ -152,7 +152,8 @@ def compare(
             text = "shorter steps tell interruptions better"
             notes.append(f"The {name} has a value every {three(1e6 * step)} µs: {text}.")
     if own.counted > len(own.duration):
-        notes.append(f"The component counted {own.counted} interruptions, the resistance shows {len(own.duration)}.")
+        text = f"by its own chatter.resistanceThreshold, the resistance shows {len(own.duration)}"
+        notes.append(f"The component counted {own.counted} interruptions {text}.")
     if shift is None:
         some = len(own.start) and len(other.start)
         shift = float(own.start[0] - other.start[0]) if some else 0.0

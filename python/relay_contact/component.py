@@ -17,6 +17,7 @@ from numbers import Real
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any, Self, TypeVar
+from zipfile import BadZipFile
 
 import numpy as np
 from fmpy import extract, fmi2, platform, read_model_description, supported_platforms
@@ -131,9 +132,13 @@ class Component:
         self.path = Path(path) if path else fmu_path()
         if not self.path.is_file():
             raise RelayContactError(f"{self.path} is missing: build it with `cargo xtask fmu`")
-        if platform not in supported_platforms(str(self.path)):
-            there = ", ".join(supported_platforms(str(self.path)))
-            raise RelayContactError(f"{self.path} has libraries for {there} only, not for this machine ({platform})")
+        try:
+            there = supported_platforms(str(self.path))
+        except BadZipFile as error:
+            raise RelayContactError(f"{self.path}: no component, or not the whole of it: {error}") from error
+        if platform not in there:
+            text = f"has libraries for {', '.join(there)} only, not for this machine ({platform})"
+            raise RelayContactError(f"{self.path} {text}")
         self.description = read_model_description(str(self.path))
         self.variables = known = {variable.name: variable for variable in self.description.modelVariables}
         self.choices = cache(lambda name: {str(each.name): int(each.value) for each in known[name].declaredType.items})

@@ -107,6 +107,9 @@ def draw(table: Path, title: str, sweep: Sequence[float] | None = None) -> Path:
     The figure stands beside the table, as a PNG file of the same name.
     """
     columns = read_table(table)
+    if "time" not in columns or len(columns) == 1:
+        text = f"columns {', '.join(columns)}: not allowed, allowed is time and one or more outputs"
+        raise RelayContactError(f"{table}: {text}")
     time = columns.pop("time")
     known = units(read_model_description(str(description_path()), validate=False))
     scale, shown = (1.0, "s") if time[-1] > 0.2 else (1e3, "ms")

@@ -121,7 +121,10 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
     found = []
     names = []
     others = []
-    for each in READERS.get(path.suffix.lower(), text)(path):
+    for each in channels(path):
+        if isinstance(each.values, np.ndarray) and not np.issubdtype(each.values.dtype, np.number):
+            # Texts beside the record.
+            continue
         name, own = each.name, each.unit
         names.append(name)
         known = spelled(own) or spelled(unit)
@@ -140,6 +143,16 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         there = f"there are {', '.join(others)}" if others else there
         raise RelayContactError(f"{path}: no channel with an acceleration in g or m/s2; {there}; a unit may be given")
     return [replace(each, others=tuple(others)) for each in found]
+
+
+def channels(path: Path) -> Iterator[Channel]:
+    """Read a file of any kind; what its package finds wrong is an error that names the file."""
+    try:
+        yield from READERS.get(path.suffix.lower(), text)(path)
+    except RelayContactError:
+        raise
+    except Exception as error:
+        raise RelayContactError(f"{path}: cannot be read: {error}") from error
 
 
 def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> Record:
@@ -215,12 +228,11 @@ def mdf(path: Path) -> Iterator[Channel]:
     """Read a file of ASAM MDF."""
     with asked("asammdf", path).MDF(path) as file:
         for signal in file.iter_channels():
-            if np.issubdtype(np.asarray(signal.samples).dtype, np.number):
-                time = signal.timestamps if signal.group_index in file.masters_db else None
-                bits = signal.invalidation_bits
-                bad = False if bits is None else np.asarray(bits)
-                clock = MASTERS[signal.master_metadata[1]]
-                yield Channel(signal.name, signal.unit, time, signal.samples, clock, bad)
+            time = signal.timestamps if signal.group_index in file.masters_db else None
+            bits = signal.invalidation_bits
+            bad = False if bits is None else np.asarray(bits)
+            clock = MASTERS[signal.master_metadata[1]]
+            yield Channel(signal.name, signal.unit, time, signal.samples, clock, bad)
 
 
 def uff(path: Path) -> Iterator[Channel]:

@@ -40,7 +40,7 @@ INPUTS: Units = {
 def read_table(path: Path) -> dict[str, Array]:
     """Read a CSV file that `write_table` has written, its columns by name."""
     try:
-        with path.open(encoding="utf-8") as file:
+        with path.open(encoding="utf-8-sig") as file:
             names = file.readline().strip().split(",")
             return dict(zip(names, np.loadtxt(file, delimiter=",", ndmin=2).T, strict=True))
     except ValueError as error:

@@ -30,6 +30,7 @@ SWITCHES = {
     "contact.stiffness": ("effects.contactLaw", "Rough"), "beam.axialForce": ("effects.axialForce", "Prescribed"),
     "pusher.": ("effects.pusher", "Prescribed", "Armature"), "armature.": ("effects.pusher", "Armature"),
     "pusher.displacement": ("effects.pusher", "Prescribed"), "coil.relativeCurrent": ("effects.pusher", "Armature"),
+    "second.minimumDuration": ("second.minimumDuration",),
     "excitation.": ("effects.excitation", "Sine", "LogSweep", "HalfSine", "Random"),
 }  # fmt: skip
 """By the beginning of the names of parameters and inputs, the longest last: what they are not used without."""

@@ -112,7 +112,7 @@ def applied(values: Mapping[str, Any], start: float, folder: Path) -> dict[str, 
         if isinstance(value, str) or not math.isfinite(value) or not (value > 0 or signed):
             raise RelayContactError(f"{name} = {value}: not allowed, allowed is a factor greater than 0")
     modulus = float(own.get("beam.youngsModulus", start))
-    if STIFFNESS in factors:
+    if STIFFNESS in factors and not (own.get("beam.file") and by_modes(Path(own["beam.file"]))):
         own["beam.youngsModulus"] = modulus * factors[STIFFNESS]
     for parameter, prefix in OF_FILES.items():
         mine = {name: value for name, value in factors.items() if name.startswith(prefix)}

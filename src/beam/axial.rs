@@ -17,12 +17,15 @@
 //! `beta N_0 w_xt`. The rest is a load. Relative to the tip stiffness it is of the order of
 //! `N_0 L^2 / (E I)`, 7e-4 at the specimen.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Schur};
 
 use crate::beam::mode::{MAX_MODES, Modal, Mode, ModeState};
 use crate::beam::section::Section;
 use crate::beam::spring::Basis;
 use crate::preload::Preload;
+
+/// Of the search for eigenvalues, which takes two or three for each.
+const ITERATIONS: usize = 30 * MAX_MODES;
 
 /// The axial force that follows the deflection at all times, as a load on the modes.
 #[derive(Clone, Debug)]
@@ -103,7 +106,9 @@ impl Feedback {
         let tips = vector(&|mode, _| mode.tip);
         let mut inverse = DMatrix::from_diagonal(&vector(&|mode, _| 1.0 / mode.omega_squared));
         inverse.ger(-1.0 / (1.0 + tips.dot(&pushed)), &pushed, &compliant, 1.0);
-        let largest = inverse.complex_eigenvalues().iter().map(|mu| mu.re).fold(0.0, f64::max);
+        // Without a limit the search turned for ever where inertia and many modes spread the frequencies beyond rounding.
+        let schur = Schur::try_new(inverse, f64::EPSILON, ITERATIONS)?;
+        let largest = schur.complex_eigenvalues().iter().map(|mu| mu.re).fold(0.0, f64::max);
         (largest > 0.0).then(|| 1.0 / largest.sqrt())
     }
 }

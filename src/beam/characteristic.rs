@@ -53,15 +53,17 @@ fn determinant(section: &Section, axial_force: f64, stiffness: f64, omega: f64) 
     let decay = (-s2).exp();
     let (sin, cos) = s1.sin_cos();
     // sin, cos, sinh, cosh, all divided by e^(s2 L).
-    let (sin, cos) = (sin * decay, cos * decay);
+    let (low, high) = (sin * decay, cos * decay);
     let (sinh, cosh) = ((1.0 - decay * decay) / 2.0, f64::midpoint(1.0, decay * decay));
-    // [W, W', W'', W'''] of U and V at the tip, in units of L.
-    let u = [cos - cosh, -s1 * sin - s2 * sinh, -s1 * s1 * cos - s2 * s2 * cosh, s1.powi(3) * sin - s2.powi(3) * sinh];
+    // [W, W', W'', W'''] at the tip, in units of L, of U and of V - s1 U: what grows like e^(s2 x) is in U alone, else the two would
+    // be the same to rounding under a large tension.
+    let u =
+        [high - cosh, -s1 * low - s2 * sinh, -s1 * s1 * high - s2 * s2 * cosh, s1.powi(3) * low - s2.powi(3) * sinh];
     let v = [
-        s2 * sin - s1 * sinh,
-        s1 * s2 * (cos - cosh),
-        -s1 * s2 * (s1 * sin + s2 * sinh),
-        -s1 * s2 * (s1 * s1 * cos + s2 * s2 * cosh),
+        s2 * sin - s1 * (cos - decay),
+        s1 * (s2 * (cos - decay) + s1 * sin),
+        s1 * (s2 * s2 * decay - s1 * (s2 * sin - s1 * cos)),
+        -s1 * (s2.powi(3) * decay + s1 * s1 * (s2 * cos + s1 * sin)),
     ];
     let moment = |w: [f64; 4]| w[2] - inertia * w[1];
     let shear = |w: [f64; 4]| w[3] + nu * w[1] + support * w[0];

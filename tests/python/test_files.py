@@ -582,6 +582,10 @@ def test_what_cannot_be_drawn_is_refused(tmp_path: Path, capsys: pytest.CaptureF
         table.write_bytes(text.encode(errors="surrogateescape"))
         assert main(["plot", str(table)]) == 1
         assert "table.csv: not a table as `relay-contact run`" in capsys.readouterr().err
+    for text in ("", "time\n1\n", "s,contact.force\n0,1\n"):
+        table.write_text(text)
+        assert main(["plot", str(table)]) == 1
+        assert "allowed is time and one or more outputs" in capsys.readouterr().err
 
 
 def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
@@ -595,7 +599,9 @@ def test_a_table_is_drawn_over_time_and_over_the_frequency_of_a_sweep(
 
     monkeypatch.setattr(Figure, "savefig", savefig)
     table = tmp_path / "table.csv"
-    table.write_text("time,contact.force\n0,1\n0.5,0.2\n0.7,0\n0.8,0\n0.9,0.3\n1,0.3\n")
+    # As a table calculation saves it.
+    text = "time,contact.force\n0,1\n0.5,0.2\n0.7,0\n0.8,0\n0.9,0.3\n1,0.3\n"
+    table.write_text(text, encoding="utf-8-sig")
     for sweep in (None, (10.0, 1000.0, 0.5, 0.4)):
         plot.draw(table, "title", sweep)
     with pytest.raises(RelayContactError, match=r"table.csv: no row from 5 to 6 s, in the time of the sweep"):

@@ -30,6 +30,7 @@ from relay_contact.identification.prediction import Laboratory, exponentials
 from relay_contact.identification.relay_file import put
 from relay_contact.identification.report import silent
 from relay_contact.qualification import Relay
+from relay_contact.schema import leaves
 
 pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 SEED = 1
@@ -434,6 +435,9 @@ def test_a_ring_down_alone_tells_damping_but_not_mass_and_stiffness(tmp_path: Pa
     # The spring is off its contact.
     nothing = found(ring, parameters=["contact.overtravel"])
     assert "the data hardly depend on it" in nothing.missing["contact.overtravel"]
+    # Nor does one without any scatter.
+    exact = asked(tmp_path, measured.record(0.25, 1e4, 0.0, SEED)[1:])
+    assert len(exact.missing.keys() & set(names[:2])) == 1
     # With the true mass the frequency tells the stiffness: of a beam with a rivet, by the exact solution.
     relay = tmp_path / "relay.toml"
     relay.write_text(
@@ -633,6 +637,14 @@ def test_a_gauge_at_the_fixed_contact_shows_the_force_of_both_twin_contacts(tmp_
     relay.write_text("".join(f"parameters.{each}\n" for each in twins) + relay.read_text())
     result = found(data, relay=relay, parameters=["beam.youngsModulus"])
     assert result["beam.youngsModulus"].value == pytest.approx(1.15e11, rel=1e-6)
+    # The stiffness of a spring file whose segments have the modulus of the relay is written, too.
+    (tmp_path / "strip.toml").write_text("[[segment]]\nlength = 18e-3\nwidth = 5e-3\nthickness = 0.22e-3\n")
+    relay.write_text(f"parameters.beam.file = 'strip.toml'\n{relay.read_text()}")
+    result = found(data, relay=relay, parameters=["spring.stiffness"], out=tmp_path / "found")
+    assert result["spring.stiffness"].value == pytest.approx(1.15 / 1.1, rel=1e-6)
+    written = Relay.read(tmp_path / "found/relay.toml", COMPONENT).positions["on"]
+    uniform: Values = {**written, "beam.file": "", "beam.youngsModulus": 1.15e11}
+    assert resting(written, "contact.force") == pytest.approx(resting(uniform, "contact.force"), rel=1e-6)
 
 
 def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel(tmp_path: Path) -> None:
@@ -654,6 +666,13 @@ def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel
     assert result["beam.youngsModulus"].value == pytest.approx(1.15e11, rel=1e-6)
     low, high = result["contact.overtravel"].interval
     assert low <= result["contact.overtravel"].value <= high
+    # What the table of the pusher has stays there.
+    truth = tmp_path / "truth.toml"
+    text = relay.read_text().replace("1.45e-3", "1.4e-3").replace("110000000000.0", "1.15e11")
+    truth.write_text(text.replace("12e-3", "12.1e-3"))
+    found(data, relay=truth, parameters=["pusher.position"], out=tmp_path / "found")
+    written = Relay.read(tmp_path / "found/truth.toml", COMPONENT)
+    assert written.positions["on"]["pusher.position"] == pytest.approx(12e-3, rel=1e-5)
     # A pusher that touches the lifted spring changes what rings.
     write_table(ring, "time,displacement", np.column_stack([np.arange(20), np.sin(np.arange(20))]))
     with pytest.raises(RelayContactError, match=r"ring.csv:1: which position of the coil"):
@@ -671,17 +690,22 @@ def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel
         "parameters.beam.width = 1.0\ntitle = 'a'\nparameters.tip.mass = 1.0\n[[position]]\nname = 'a'\n",
         "[parameters.beam]\nwidth = 1.0\n[uncertainty]\ntip.mass = 0.1\n[parameters.tip]\nmass = 1.0\n",
         "parameters = { beam = { width = 1.0 }, tip = { mass = 1.0 } }\n",
+        "parameters = { beam.width = 1.0, tip.mass = 1.0, beam.length = 1.0 }\n",
+        "[parameters]\n'beam.width' = 1.0\n'tip.mass' = 1.0\n",
     ],
 )
 def test_values_are_put_into_a_file_however_its_lines_are_ordered(text: str) -> None:
+    def named(text: str) -> list[tuple[str, Any]]:
+        return [(name, value) for name, _, value in leaves(tomllib.loads(text))]
+
     content: Any = tomlkit.parse(text)
-    expected = content.unwrap()
+    expected = dict(named(text))
     for name, value in (("tip.mass", 2.0), ("beam.density", 3.0), ("contact.damping", 4.0), ("beam.width", 5.0)):
         put(content["parameters"], name, tomlkit.value(str(value)), "identified")
-        group, key = name.split(".")
-        expected["parameters"].setdefault(group, {})[key] = value
+        expected[f"parameters.{name}"] = value
     written = tomlkit.dumps(content)
-    assert tomllib.loads(written) == expected
+    # Each once, too.
+    assert sorted(named(written)) == sorted(expected.items())
     assert written.count("# of") == text.count("# of")
 
 
@@ -690,6 +714,8 @@ def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> N
     for asked, message in (
         ({"parameters": ["tip.mas"]}, "tip.mas: no such variable; did you mean tip.mass"),
         ({"parameters": ["spring.thickness"]}, "spring.thickness: no such entry in the spring file"),
+        # Which would be written nowhere.
+        ({"parameters": ["spring.stiffness"]}, "spring.stiffness: no such entry in the spring file.*youngsModulus"),
         ({"parameters": ["beam.massDamping"]}, "beam.massDamping = 0 in the relay's file: not allowed"),
         ({"relay": ROOT / "none.toml"}, "no such file, and no relay of this name"),
     ):

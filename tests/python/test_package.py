@@ -66,6 +66,8 @@ def test_an_input_course_is_linear_between_its_points() -> None:
         ({"friction_coefficient": 0.3}, ["friction.coefficient = 0.3: not used without effects.friction = Coulomb"]),
         # Who says so knows it.
         ({"friction_coefficient": 0.3, "effects_friction": "None"}, []),
+        # Of the first contact, too.
+        ({"second_minimumDuration": 1e-5}, []),
     ],
 )
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
@@ -91,6 +93,10 @@ def test_a_component_for_other_machines_is_refused(tmp_path: Path) -> None:
         Component(other)
     with pytest.raises(RelayContactError, match=r"is missing: build it with"):
         Component(str(tmp_path / "none.fmu"))
+    # As a download that has ended too early.
+    other.write_bytes(FMU.read_bytes()[:100000])
+    with pytest.raises(RelayContactError, match=r"other.fmu: no component, or not the whole of it"):
+        Component(other)
 
 
 def test_runs_without_a_component_have_one_until_its_file_changes(

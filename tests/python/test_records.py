@@ -137,8 +137,13 @@ def test_files_of_measuring_programs(tmp_path: Path) -> None:
         assert ("time without a unit, taken as s" in record.notes) == (name == "road.mat"), name
     pyuff.UFF(str(tmp_path / "road.uff")).write_sets({**blank, "func_type": 4, "data": VALUES + 0j}, "add")
     assert read(tmp_path / "road.uff")[0].others == ("set 2 (function type 4)",)
-    savemat(tmp_path / "matrix.mat", {"t": TIME, "Z": VALUES, "axes": np.ones((400, 3))})
+    names = {"names": ["x", "y"], "units": np.array(["g", "m/s2"], dtype=object)}
+    savemat(tmp_path / "matrix.mat", {"t": TIME, "Z": VALUES, "axes": np.ones((400, 3)), **names})
     assert read(tmp_path / "matrix.mat", unit="g")[0].others == ("axes (a matrix)",)
+    # As a copy that has ended too early.
+    (tmp_path / "part.mat").write_bytes((tmp_path / "road.mat").read_bytes()[:50])
+    with pytest.raises(RelayContactError, match=r"part.mat: cannot be read: "):
+        read(tmp_path / "part.mat")
     for suffix in ("uff", "tdms"):
         with pytest.raises(RelayContactError, match=r"channel Z: time in min: not allowed, allowed is s, ms, us"):
             read(tmp_path / f"roadmin.{suffix}")

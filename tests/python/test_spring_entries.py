@@ -34,6 +34,9 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
     pairs = (resting({**closed, "spring.stiffness": k}, "preload.force", "preload.indentation") for k in (1, 1.21))
     own, stiff = (force / (1e-3 - indentation) for force, indentation in pairs)
     assert stiff == pytest.approx(1.21 * own, rel=1e-9)
+    with COMPONENT.started({**closed, "spring.stiffness": 1.21}) as contact:
+        # Of a modulus that nobody has set, and that modes do not have.
+        assert "youngsModulus" not in "".join(contact.warnings)
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,7 @@ HELD = 1.5
 """Standard deviation of the logarithms, about the relay's file, as long as some of them are not determined: the search
 would go far away along them, and might find another minimum there."""
 TINY = 1e-8  # sensitivity, as a part of the largest, below which there is none
+UNKNOWN = 10.0  # standard deviation of logarithms, at least, where there is none
 ALL = 1.96  # standard deviations within which 95 % of a normal distribution lie
 ENDS = {"low": -1.0, "high": 1.0}
 """Of the search; its signs are the ends of the logarithm of a calibration."""
@@ -296,7 +297,9 @@ class Fit:
         # As many rows as unknowns at least: with fewer, directions that the data tell nothing of would be left out.
         rows = np.vstack([told / sizes, np.zeros((len(sizes), len(sizes)))])
         _, singular, directions = np.linalg.svd(rows, full_matrices=False)
-        scaled = directions / np.maximum(singular, TINY)[:, None]
+        # However small the scatter is.
+        least = np.minimum(TINY, np.linalg.norm(directions / sizes, axis=1) / UNKNOWN)
+        scaled = directions / np.where(singular > TINY, singular, least)[:, None]
         return np.asarray(scaled.T @ scaled / np.outer(sizes, sizes))
 
     @property

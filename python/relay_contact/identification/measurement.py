@@ -101,7 +101,11 @@ def read(path: Path, component: Component, positions: list[str], pushed: bool = 
     if kind == FORCE:
         signs(table)
     told = interpreted(table, component, positions)
-    is_open = told.pop("contact", "closed" if quantity in ("force", "level", "frequency") else "open") == "open"
+    presses = quantity in ("force", "level", "frequency")
+    is_open = told.pop("contact", "closed" if presses else "open") == "open"
+    if presses and is_open:
+        text = f"contact = open: not allowed, allowed is closed for a {quantity}"
+        raise table.wrong(text, table.settings["contact"][1])
     position, calibration = str(told.pop("position", positions[0])), float(told.pop("calibration", 0.0))
     if len(positions) > 1 and (pushed or not is_open) and "position" not in table.settings:
         raise table.wrong(f"which position of the coil? A line before says so: # position = {' or '.join(positions)}")

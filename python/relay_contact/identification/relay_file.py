@@ -10,10 +10,14 @@ import tomlkit
 from tomlkit.container import OutOfOrderTableProxy
 from tomlkit.items import InlineTable
 
+from relay_contact.component import Component
 from relay_contact.files import write_at_once
 from relay_contact.identification.result import Found, Identification, has
+from relay_contact.qualification.relay import TABLES
 from relay_contact.schema import leaves
-from relay_contact.spring import PREFIX, SPRING_FILES, text_of
+from relay_contact.spring import PREFIX, SPRING_FILES, STIFFNESS, text_of
+
+MODULUS = "beam.youngsModulus"
 
 
 def number(value: float, half: float) -> Any:  # noqa: ANN401
@@ -38,8 +42,11 @@ def put(table: Any, name: str, item: Any, remark: str = "") -> None:  # noqa: AN
     """Set an entry of a table of a file by its dotted name, with a remark behind it."""
     if remark:
         item.comment(remark)
-    path = name.split(".")
+    path = [name] if name in table else name.split(".")
     for number, key in enumerate(path):
+        if isinstance(table, InlineTable):
+            # A remark would end the line of all of it.
+            item.trivia.comment = ""
         if key not in table and isinstance(table, OutOfOrderTableProxy):
             # The lines of this table do not follow each other: to the first of them.
             table[tomlkit.key(path[number:])] = item
@@ -77,7 +84,8 @@ def text(result: Identification, spring: str, folder: Path) -> str:
         if not name.startswith(PREFIX):
             remark = f"identified, ± {100 * each.half:.2g} %; was {each.unknown.start:g}"
             own = [tables[place] for place in each.unknown.positions if has(tables[place], name)]
-            for table in [place["parameters"] for place in own] or [content["parameters"]]:
+            whole = content if name.partition(".")[0] in TABLES else content["parameters"]
+            for table in [place["parameters"] for place in own] or [whole]:
                 put(table, name, number(each.value, each.half), remark)
         widest = max((other for other in result.found if other.unknown.name == name), key=lambda other: other.half)
         put(content["uncertainty"], name, uncertainty(widest), "identified")
@@ -108,20 +116,23 @@ def correlations(result: Identification) -> tuple[list[str], list[list[float]]]:
     return list(first), np.clip(matrix, -1.0, 1.0).tolist()
 
 
-def spring_text(result: Identification) -> tuple[str, str]:
+def spring_text(result: Identification, component: Component) -> tuple[str, str]:
     """Give name and text of the spring file with what was found of it; nothing if the relay has none."""
     files = {str(values.get("beam.file", "")) for values in result.relay.positions.values()}
     if files == {""}:
         return "", ""
     # All positions have the same spring.
     file = Path(next(iter(files)))
-    found = [each for each in result.found if each.unknown.name.startswith(PREFIX)]
-    return file.name, text_of(str(file), {each.unknown.name: each.value for each in found})
+    found = {each.unknown.name: each.value for each in result.found}
+    # Segments without a modulus have that of the relay, which stays.
+    modulus = found.get(MODULUS, result.relay.value(component, MODULUS)) if STIFFNESS in found else None
+    entries = {name: value for name, value in found.items() if name.startswith(PREFIX)}
+    return file.name, text_of(str(file), entries, modulus)
 
 
-def write(folder: Path, result: Identification) -> None:
+def write(folder: Path, result: Identification, component: Component) -> None:
     """Write both files."""
-    name, spring = spring_text(result)
+    name, spring = spring_text(result, component)
     if name:
         write_at_once(folder / name, spring)
     write_at_once(folder / f"{result.path.stem}.toml", text(result, name, folder))

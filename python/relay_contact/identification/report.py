@@ -152,4 +152,4 @@ def write(folder: Path, result: Identification, component: Component) -> None:
             numbers = (each.unknown.start, each.value, *each.interval)
             lines_.writerow([each.unknown.label, *(f"{number:.9g}" for number in numbers)])
         lines_.writerows([label, "", "not determined", "", ""] for label in result.missing)
-    relay_file.write(folder, result)
+    relay_file.write(folder, result, component)

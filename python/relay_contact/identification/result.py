@@ -121,9 +121,11 @@ def unknowns(
         for group in groups:
             values = relay.positions[group[0]]
             if name.startswith(PREFIX):
-                allowed = known(str(values.get("beam.file", "")))
+                file = str(values.get("beam.file", ""))
+                allowed = known(file) if file else []
                 if name not in allowed:
-                    raise RelayContactError(f"{name}: no such entry in the spring file{nearest(name, allowed)}")
+                    near = nearest(name, allowed) if file else ", as there is none: seek beam.youngsModulus"
+                    raise RelayContactError(f"{name}: no such entry in the spring file{near}")
                 start, least, most = 1.0, 0.0, np.inf
             else:
                 variable = component.variables[name]
