@@ -39,8 +39,8 @@ const SHARED: [(&str, &str); 11] = [
 const BARELY: f64 = 1e-15;
 
 /// Scenes in which every known that matters at all matters somewhere: the start values with these changes. A threshold that
-/// is critical is the resistance at rest; with an overtravel that is critical the contact is about to close, with a pusher that is, it
-/// has just touched.
+/// is critical is the resistance at rest; with an overtravel that is critical the contact is about to close, with a parallel contact or a
+/// pusher that is, it has just touched.
 const SCENES: &str = "\
 PLAIN
 effects.axialForce=2
@@ -92,6 +92,8 @@ BESIDE ALL_COUNT chatter.resistanceThreshold=0.085
 BESIDE ALL_COUNT effects.contactLaw=4 chatter.resistanceThreshold=0.085
 # The parallel contact holds the first open; a softer one would not.
 BESIDE parallel.offset=-2e-7
+BESIDE parallel.offset=critical
+BESIDE effects.contactLaw=4 parallel.offset=critical
 BESIDE PRESSED PULLED pusher.displacement=critical
 BESIDE PRESSED PULLED effects.contactLaw=4 pusher.displacement=critical
 BESIDE MOVED PULLED coil.relativeCurrent=0.2 OPEN
@@ -149,6 +151,10 @@ impl Known {
                     // The same distance further than where the contact is open.
                     known.scene.contact.overtravel = -1e-3;
                     -BARELY - 1e-3 - known.at_rest(RealOutput::ContactIndentation)
+                }
+                "parallel.offset" if value.is_nan() => {
+                    known.scene.parallel.offset = 1e-3;
+                    known.at_rest(RealOutput::ContactIndentation) - BARELY
                 }
                 "pusher.displacement" if value.is_nan() => {
                     // Where it touches without force.
