@@ -51,13 +51,16 @@ class Record:
     """Unit of time in the file, empty if it has none."""
     others: tuple[str, ...] = ()
     """Channels that are not tested, as they have another unit or none, are masses, or not over time."""
+    overruled: str = ""
+    """What is to be said of a unit given where the file has another; empty if nothing."""
 
     @property
     def notes(self) -> list[str]:
         """Return what has to be said of its time, and of what is beside it in the file."""
         steps = np.diff(self.time)
         usual = float(np.median(steps))
-        told = [] if self.clock else ["time without a unit, taken as s"]
+        told = [self.overruled] if self.overruled else []
+        told += [] if self.clock else ["time without a unit, taken as s"]
         if usual < SHORTEST:
             told.append(f"steps of time of {three(1e6 * usual)} µs: is it in s?")
         if self.time[0]:
@@ -135,7 +138,9 @@ def read(path: Path, channel: str = "", unit: str = "", rate: float | None = Non
         if known not in ACCELERATIONS:
             text_ = f"unit {own or 'none'}: not allowed, allowed is {', '.join(ACCELERATIONS)}"
             raise RelayContactError(f"{path}: channel {name}: {text_}{'' if own else '; give the unit'}")
-        found.append(checked(path, each, ACCELERATIONS[known], rate))
+        overrules = spelled(own) and spelled(unit) not in ("", spelled(own))
+        told = f"in {own}, as the file says, not in {unit}" if overrules else ""
+        found.append(replace(checked(path, each, ACCELERATIONS[known], rate), overruled=told))
     if not found:
         there = f"there are {', '.join(names)}" if names else "there is none"
         if channel:

@@ -29,8 +29,11 @@ def test_text_with_several_channels_and_an_offset_of_time(tmp_path: Path) -> Non
     assert asked.channel == "y"
     # What is left out is told, unless one channel is asked for.
     assert ["temp (degC)" in " ".join(each.notes) for each in (first, second, asked)] == [True, True, False]
-    # The units of the file count.
-    assert np.array_equal(read(path, unit="g")[1].acceleration, second.acceleration)
+    # The units of the file count, which is told.
+    both = read(path, unit="g")
+    assert np.array_equal(both[1].acceleration, second.acceleration)
+    assert [each.overruled for each in both] == ["", "in m/s2, as the file says, not in g"]
+    assert both[1].overruled in both[1].notes
     assert [note for note in first.notes if "12.5 s" in note]
     assert not [note for note in first.notes if "unequal" in note]
     with pytest.raises(RelayContactError, match=r"no channel z; there are x, temp, y"):
