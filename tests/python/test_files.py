@@ -285,6 +285,19 @@ def test_errors_in_a_relay_file_have_their_line(tmp_path: Path, text: str, messa
         Relay.read(path, COMPONENT)
 
 
+def test_a_relay_names_its_spring_where_the_component_carries_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start = COMPONENT.start
+    monkeypatch.setattr(COMPONENT, "start", lambda name: "own.toml" if name == "beam.file" else start(name))
+    path = tmp_path / "relay.toml"
+    path.write_text(PAPER)
+    with pytest.raises(RelayContactError, match=r": parameters\.beam\.file: missing; the component carries a spring"):
+        Relay.read(path, COMPONENT)
+    path.write_text(f"{PAPER}parameters.beam.file = '{ROOT}/scenes/springs/tapered-cube.toml'\n")
+    Relay.read(path, COMPONENT)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -130,6 +130,9 @@ class Relay:
             if name in positions:
                 raise schema.refused(path, (*place, "name"), name, "given twice")
             positions[name] = {**shared, **parameters(path, each.parameters, (*place, "parameters"), component)}
+            if component.start("beam.file") and "beam.file" not in positions[name]:
+                text = "beam.file: missing; the component carries a spring, and a relay names its own"
+                raise RelayContactError(f"{path}:{schema.line(path, ('parameters',))}: parameters.{text}")
             with schema.at(path, *place):
                 # Parameters that do not fit together.
                 blow(component, positions[name])
