@@ -235,11 +235,12 @@ impl<'a> Pressed<'a> {
             return Err(not_finite(RealOutput::ParallelForce, above.1));
         };
         let force = law.elastic_force(indentation);
+        let rests = Preload { parallel_force: force, parallel_indentation: indentation, ..self.with(force)? };
         // What is no root but a jump is no equilibrium.
-        if excess(indentation).abs() > 1e-6 * open {
+        if (indentation - self.parallel_indentation(&rests, force)).abs() > 1e-6 * open {
             return Err(not_finite(RealOutput::ParallelForce, force));
         }
-        Ok(Preload { parallel_force: force, parallel_indentation: indentation, ..self.with(force)? })
+        Ok(rests)
     }
 
     /// The equilibrium with a parallel contact that presses with this force, N.
@@ -292,22 +293,25 @@ impl<'a> Pressed<'a> {
         let (mut y, mut last) = (0.0, f64::INFINITY);
         for _ in 0..1000 {
             let n = self.axial(y);
-            match self.check_buckling(n) {
-                Err(_) if y < 0.0 => return Ok(y),
-                buckled => buckled?,
+            if self.check_buckling(n).is_err() {
+                break;
             }
             let next = self.loaded([0.0, parallel], n);
             let change = (next - y).abs();
             // To rounding.
-            if change <= f64::EPSILON * next.abs() || last <= change && change < 1e-9 * next.abs() || y < -length {
+            if change <= f64::EPSILON * next.abs() || last <= change && change < 1e-9 * next.abs() {
                 return Ok(next);
             }
-            if y > length {
+            if y.abs() > length {
                 break;
             }
             (y, last) = (next, change);
         }
-        if y < 0.0 { Ok(y) } else { Err(not_finite(RealOutput::PreloadIndentation, self.overtravel - y)) }
+        if y < 0.0 {
+            return Ok(y);
+        }
+        self.check_buckling(self.axial(y))?;
+        Err(not_finite(RealOutput::PreloadIndentation, self.overtravel - y))
     }
 
     /// Refuses friction under which the spring gives way more than it presses back, at an axial force (N), and a spring that has

@@ -53,12 +53,16 @@ fn determinant(section: &Section, axial_force: f64, stiffness: f64, omega: f64) 
     let decay = (-s2).exp();
     let (sin, cos) = s1.sin_cos();
     // sin, cos, sinh, cosh, all divided by e^(s2 L).
-    let (low, high) = (sin * decay, cos * decay);
+    let (faded_sin, faded_cos) = (sin * decay, cos * decay);
     let (sinh, cosh) = ((1.0 - decay * decay) / 2.0, f64::midpoint(1.0, decay * decay));
     // [W, W', W'', W'''] at the tip, in units of L, of U and of V - s1 U: what grows like e^(s2 x) is in U alone, else the two would
     // be the same to rounding under a large tension.
-    let u =
-        [high - cosh, -s1 * low - s2 * sinh, -s1 * s1 * high - s2 * s2 * cosh, s1.powi(3) * low - s2.powi(3) * sinh];
+    let u = [
+        faded_cos - cosh,
+        -s1 * faded_sin - s2 * sinh,
+        -s1 * s1 * faded_cos - s2 * s2 * cosh,
+        s1.powi(3) * faded_sin - s2.powi(3) * sinh,
+    ];
     let v = [
         s2 * sin - s1 * (cos - decay),
         s1 * (s2 * (cos - decay) + s1 * sin),

@@ -150,7 +150,7 @@ impl Space {
         Some(modes)
     }
 
-    /// Of a shape what gives, times another one, the integral over the length (m) of the product of their slopes.
+    /// The vector whose product with another shape is the integral over the length (m) of the product of both slopes.
     pub fn slopes_of(&self, length: f64, shape: &DVector<f64>) -> DVector<f64> {
         &self.geometric * shape * (2.0 / length)
     }
