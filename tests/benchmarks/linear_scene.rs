@@ -163,12 +163,12 @@ fn stiffen(scene: &mut Scene, factor: f64) {
     scene.contact.fixed.youngs_modulus *= root.powi(2).min(100.0);
 }
 
-/// Largest error of the contact force, relative to its scale, under acceleration held or growing, moving support and the generator,
-/// against the exponential of the matrix of all of it.
+/// Largest error of the contact force, relative to its scale and in roundings of what it is made of, under acceleration held or growing,
+/// moving support and the generator, against the exponential of the matrix of all of it.
 ///
 /// Both round each mode to the last place in every step, and the force is the sum of what spring and damper make of the modes,
 /// up to 1000 times the force scale with the stiff contact.
-fn error_against_the_exponential(scene: &Scene) -> f64 {
+fn error_against_the_exponential(scene: &Scene) -> (f64, f64) {
     let length = 3e-6;
     let mut rig = Rig::new(Model::new(scene, 0.0).unwrap());
     let model = rig.model.clone();
@@ -198,7 +198,7 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
     let step = matrix.exp();
 
     let mut motion = DVector::zeros(2 * n + 6);
-    let (mut support, mut worst) = (0.0, 0.0_f64);
+    let (mut support, mut worst, mut largest) = (0.0, 0.0_f64, model.force_scale);
     for count in 0..40 {
         let start = rig.state.time;
         let inputs = Inputs {
@@ -226,11 +226,12 @@ fn error_against_the_exponential(scene: &Scene) -> f64 {
         for (i, mode) in model.modes.iter().enumerate() {
             let parts = [motion[i] / w, beta_c * motion[n + i]].map(|part| k * mode.tip * part);
             force -= parts[0] + parts[1];
+            largest = largest.max(parts[0].abs() + parts[1].abs());
         }
         worst = worst.max((rig.state.contact().force - model.preload.force - force).abs());
     }
     assert_eq!(rig.state.steps, 40);
-    worst / model.force_scale
+    (worst / model.force_scale, worst / (f64::EPSILON * largest))
 }
 
 #[test]
@@ -244,9 +245,9 @@ fn every_damping_and_load_against_the_matrix_exponential() {
             stiffen(&mut scene, factor);
             // At the resonance, which without damping has no steady motion.
             scene.excitation.frequency = Model::new(&scene, 0.0).unwrap().frequency;
-            let worst = error_against_the_exponential(&scene);
-            // Roundings of the motion in forty steps, which the stiffest contact makes 1e-12 of the force scale.
-            assert!(worst < 2e-12, "{damping:?} {modes} {factor} {mass}: {worst:e}");
+            let (_, roundings) = error_against_the_exponential(&scene);
+            // Spring and damper, of both, in forty steps, which add up as they happen to.
+            assert!(roundings < 160.0_f64.sqrt(), "{damping:?} {modes} {factor} {mass}: {roundings}");
         }
     }
 }
@@ -263,7 +264,7 @@ fn exact_steps_hold_through_critical_damping() {
         let beam = 1e-6;
         let unequal = (critical * (1.0 + off) - beam * mode.omega_squared) / contact;
         for damping in [(0.0, both, both), (0.0, beam, unequal), (0.0, 0.0, critical * (1.0 + off) / contact)] {
-            let worst = error_against_the_exponential(&damped(ContactLawKind::Bonded, 1, damping));
+            let (worst, _) = error_against_the_exponential(&damped(ContactLawKind::Bonded, 1, damping));
             assert!(worst < 1e-12, "{off:e} {damping:?}: {worst:e}");
         }
     }

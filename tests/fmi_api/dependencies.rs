@@ -173,35 +173,29 @@ impl Known {
         Simulation::new(&self.scene, &self.inputs, 0.0).unwrap().real(output)
     }
 
-    /// Other values of a known to try, each with one to try where it does not fit.
-    fn others(&self, variable: &Variable) -> Vec<[f64; 2]> {
+    /// Other values of a known to try; some may not fit.
+    fn others(&self, variable: &Variable) -> Vec<f64> {
         let near = |value: f64| {
             let Variable { min, max, .. } = *variable;
             let step = if value == 0.0 { 1e-3 * max.min(1.0) } else { 1e-3 * value };
+            // Some ends of a range do not fit.
             let inside = 1e-3 * (max - min);
-            vec![[value + step; 2], [value - step; 2], [min, min + inside], [max, max - inside]]
+            vec![value + step, value - step, min, max, min + inside, max - inside]
         };
         match variable.group {
             Group::RealInput(input) => near(self.inputs.real(input)),
             Group::RealParameter(parameter) => near(self.scene.real(parameter)),
             Group::IntegerParameter(parameter) => {
                 let value = f64::from(self.scene.integer(parameter));
-                vec![[value + 1.0; 2], [value + 10.0; 2]]
+                vec![value + 1.0, value + 10.0]
             }
             Group::EnumerationParameter(parameter) => {
-                choices(parameter).iter().map(|(_, number)| [f64::from(*number); 2]).collect()
+                choices(parameter).iter().map(|(_, number)| f64::from(*number)).collect()
             }
-            Group::BooleanParameter(parameter) => vec![[f64::from(u8::from(!self.scene.boolean(parameter))); 2]],
-            Group::StringParameter(_) => vec![[1.0; 2]],
+            Group::BooleanParameter(parameter) => vec![f64::from(u8::from(!self.scene.boolean(parameter)))],
+            Group::StringParameter(_) => vec![1.0],
             Group::RealOutput(_) | Group::IntegerOutput(_) | Group::BooleanOutput(_) => vec![],
         }
-    }
-
-    /// The unknowns with another value of a known, if it fits.
-    fn changed(&self, known: &Variable, value: f64) -> Option<BTreeMap<&'static str, u64>> {
-        let mut changed = self.clone();
-        changed.set(known, value).ok()?;
-        changed.unknowns()
     }
 
     /// The bits of the initial unknowns by name, if these values fit.
@@ -233,8 +227,9 @@ fn moved_in(scenes: impl Iterator<Item = Values>) -> Pairs {
         let base = Known::with(&values);
         let before = base.unknowns().unwrap_or_else(|| panic!("{values:?} do not fit"));
         for known in &VARIABLES {
-            for others in base.others(known) {
-                let Some(after) = others.into_iter().find_map(|other| base.changed(known, other)) else { continue };
+            for other in base.others(known) {
+                let mut changed = base.clone();
+                let Some(after) = changed.set(known, other).ok().and_then(|()| changed.unknowns()) else { continue };
                 let moved = before.iter().filter(|(name, bits)| after[*name] != **bits);
                 found.extend(moved.map(|(unknown, _)| (*unknown, known.name)));
             }

@@ -448,9 +448,9 @@ def test_draws_that_fail_at_rest_leave_the_others_their_interval() -> None:
     assert all(len(each.surfaces[SHOCK.name].values) < 20 for each in position.parts)
 
 
-@pytest.mark.parametrize("seed", [1, 6, 7])
+@pytest.mark.parametrize("seed", [1, 5, 6, 7, 8])
 def test_the_interval_of_a_record_holds_that_of_a_thousand_responses(seed: int) -> None:
-    """The surface alone is up to 2.5 % off at the lower end."""
+    """The surface alone is up to 5 % off at the lower end."""
     position = recorded(seed)
     (test,), relay = position.tests, position.relay
     surface = position.surfaces[test.name]
