@@ -357,6 +357,19 @@ def test_the_largest_of_noise_that_resonates_is_that_of_records(quality: float) 
     assert 1 / response.random(test, 0.0) == pytest.approx(np.median(largest), rel=0.025)
 
 
+def test_an_overdamped_contact_is_weakest_where_the_displacement_no_longer_limits() -> None:
+    test = Sine("a", "", READ, acceleration=1.0, double_amplitude=2.6e-3, frequencies=(2.0, 100.0), sweep_rate=1.0)
+    known = np.arange(0, 1000, 0.25)
+    transfer = np.asarray(1 / (1 + 1j * known / 0.5), np.complex128)
+    response = Response(1.0, 300.0, known, transfer, np.zeros(1))
+    frequency, factors = response.sine(test, 0.0)
+    # Between two frequencies of the response, whose level is 0.6 % higher.
+    assert np.all(np.diff(frequency) > 0)
+    corner = (2 * G / 2.6e-3) ** 0.5 / (2 * np.pi)
+    assert factors.min() == pytest.approx(abs(1 + 1j * corner / 0.5) / G, rel=1e-4)
+    assert "displacement" in judgement.bound(response, test, response.weakest(test, 0.0))
+
+
 @pytest.mark.parametrize("parts", [*permutations((0.9, 1.0, 1.1))])
 def test_of_three_dips_the_middle_one_counts(parts: tuple[float, ...]) -> None:
     class Dip(Piece):

@@ -244,9 +244,9 @@ class Sine(Test):
 
     @property
     def corner(self) -> float:
-        """Frequency (Hz) from which on the acceleration limits."""
-        assert self.acceleration is not None
-        assert self.double_amplitude is not None
+        """Frequency (Hz) from which on the acceleration limits; 0 where the displacement does not."""
+        if self.acceleration is None or self.double_amplitude is None:
+            return 0.0
         return float(np.sqrt(2 * G * self.acceleration / self.double_amplitude) / (2 * np.pi))
 
     @property
@@ -265,7 +265,8 @@ class Sine(Test):
     def tried(self, frequency: Array, gain: Array) -> Array:
         """Return the frequencies (Hz) that it vibrates at, of a response with its gain at frequencies (Hz).
 
-        The ends of a sweep and the steps are as they are given: what a double amplitude limits grows with their square.
+        Ends and corner of a sweep and the steps are as they are given: what a double amplitude limits grows with their
+        square.
         """
         if self.steps:
             return np.unique(self.steps)
@@ -273,7 +274,8 @@ class Sine(Test):
         inside = (frequency > low) & (frequency < high)
         if self.dwell:
             return frequency[inside][[int(gain[inside].argmax())]]
-        return np.concatenate(([low], frequency[inside], [high]))
+        corner = [self.corner] if low < self.corner < high else []
+        return np.sort(np.concatenate(([low, *corner, high], frequency[inside])))
 
     def __str__(self) -> str:
         """Describe the level."""

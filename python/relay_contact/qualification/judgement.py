@@ -203,6 +203,8 @@ def bound(response: Response, test: Sine, weakest: float) -> str:
         whole, below = "the whole force of inertia", "below the resonance"
         lowest = weakest == test.band[0]
         return f"lowest frequency of the range, {whole}" if lowest else f"highest frequency of the range, {below}"
+    if weakest == test.corner:
+        return "the frequency from which on the displacement is less, above the resonance or without one"
     # Time at each octave, and that which a vibration of this width takes to decay by a factor e.
     octaves = np.log2(1 + width / weakest)
     decays = octaves / test.rate * 60 * np.pi * width
