@@ -4,7 +4,7 @@ use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use crate::commands::{command, output, read, sysroot};
-use anyhow::{Context, Result};
+use anyhow::{Result, ensure};
 
 use crate::package::Files;
 use crate::python;
@@ -13,7 +13,7 @@ use crate::python;
 pub struct Rust {
     /// The compiler.
     pub rustc: PathBuf,
-    /// The folder of the sources, by its two names: where it is below the compiler, and where that leads on Debian.
+    /// The folder of the sources, by its two names: where it is below the compiler, and where links lead.
     sources: [PathBuf; 2],
 }
 
@@ -21,21 +21,14 @@ impl Rust {
     /// Finds it.
     pub fn find() -> Result<Self> {
         // The compiler itself, not rustup's stand-in for it.
-        let with_sources = |rustc: &str| {
-            let sysroot = sysroot(rustc).ok()?;
-            let sources = sysroot.join("lib/rustlib/src/rust");
-            let leads_to = sources.canonicalize().ok()?;
-            let found = sources.join("library/Cargo.toml").exists();
-            found.then_some(Self {
-                rustc: sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}")),
-                sources: [sources, leads_to],
-            })
-        };
-        let rust = ["rustc", "/usr/bin/rustc"].into_iter().find_map(with_sources);
-        rust.context(
-            "no sources of Rust's standard library: rustup component add rust-src (or on Debian: apt-get install \
-             rustc-web rust-web-src)",
-        )
+        let sysroot = sysroot("rustc")?;
+        let sources = sysroot.join("lib/rustlib/src/rust");
+        ensure!(
+            sources.join("library/Cargo.toml").exists(),
+            "no sources of Rust's standard library: rustup component add rust-src"
+        );
+        let leads_to = sources.canonicalize()?;
+        Ok(Self { rustc: sysroot.join("bin").join(format!("rustc{EXE_SUFFIX}")), sources: [sources, leads_to] })
     }
 
     /// Flags that remove its folders from what it compiles.
@@ -76,13 +69,15 @@ impl Tools {
     }
 }
 
-/// Links for macOS and WebAssembly. It comes with rustup's toolchains; Debian's have none.
+/// Links for macOS and WebAssembly. It comes with rustup's toolchains.
 pub fn lld(rustc: &Path) -> Result<PathBuf> {
-    let found = [rustc, Path::new("rustc")].into_iter().find_map(|rustc| {
-        let libraries = output(command(rustc).args(["--print", "target-libdir"])).ok()?;
-        let name = format!("rust-lld{EXE_SUFFIX}");
-        let lld = Path::new(libraries.trim()).parent()?.join("bin").join(name);
-        lld.exists().then_some(lld)
-    });
-    found.context("rust-lld is missing, which links for macOS and WebAssembly: it comes with the toolchains of rustup")
+    let libraries = output(command(rustc).args(["--print", "target-libdir"]))?;
+    let tools = Path::new(libraries.trim()).with_file_name("bin");
+    let lld = tools.join(format!("rust-lld{EXE_SUFFIX}"));
+    ensure!(
+        lld.exists(),
+        "{} is missing, which links for macOS and WebAssembly: it comes with the toolchains of rustup",
+        lld.display()
+    );
+    Ok(lld)
 }
