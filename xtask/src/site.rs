@@ -7,14 +7,19 @@ use anyhow::Result;
 
 use crate::{explore, python};
 
-/// Builds the site in `out/site/html`; a dead link is an error.
+/// Builds the site, and tests it in Chromium.
 pub fn run() -> Result<()> {
+    build()?;
+    run_command(crate::commands::python().args(["-m", "pytest", "--quiet", "explore/test_site.py"]))?;
+    println!("{}", root().join("out/site/html/index.html").display());
+    Ok(())
+}
+
+/// Builds the site in `out/site/html`, and the page that runs the simulation; a dead link is an error.
+pub fn build() -> Result<()> {
     write("out/site/source/explore.html", &read(explore::page()?)?)?;
     python::install("docs")?;
     let mut build = crate::commands::python();
     build.args(["-m", "mkdocs", "build", "--strict", "--quiet"]);
-    run_command(build.env("NO_MKDOCS_2_WARNING", "1"))?;
-    run_command(crate::commands::python().args(["-m", "pytest", "--quiet", "explore/test_site.py"]))?;
-    println!("{}", root().join("out/site/html/index.html").display());
-    Ok(())
+    run_command(build.env("NO_MKDOCS_2_WARNING", "1"))
 }

@@ -7,7 +7,7 @@ use crate::commands::{LINT, cargo, is_there, output, run as run_command, stage};
 use anyhow::{Result, anyhow, bail};
 
 use crate::release::tools::{Rust, lld};
-use crate::{explore, fmu, importers, python, report, valgrind, wheel};
+use crate::{fmu, importers, python, report, site, valgrind, wheel};
 
 #[derive(clap::Args, Clone, Copy)]
 pub struct Arguments {
@@ -89,9 +89,7 @@ fn component() -> Result<()> {
     // Which the Python tests install into an empty environment.
     stage("wheel", wheel::run)?;
     let missing = Rust::find().and_then(|rust| lld(&rust.rustc)).err().map(|error| error.to_string());
-    if_installed("page of the simulation", missing.is_none(), &missing.unwrap_or_default(), || {
-        explore::page().map(drop)
-    })?;
+    if_installed("simulation in the browser, site", missing.is_none(), &missing.unwrap_or_default(), site::build)?;
     stage("Python tests and examples", || python::test(&["examples/python", "tests/python", "explore"], &component))?;
     importers::stages(&component)
 }
