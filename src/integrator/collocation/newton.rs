@@ -26,6 +26,9 @@ use crate::math::simd::{Arithmetic, Separate};
 use crate::model::Model;
 use crate::state::State;
 
+/// Unknown forces of which the equations stand on the stack.
+pub(super) const FEW: usize = 3;
+
 /// A link whose force is unknown, and what follows it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Unknown {

@@ -8,7 +8,7 @@ use crate::integrator::collocation::coefficients::{NodalMotion, Pairs};
 use crate::integrator::collocation::elimination::{Equations, Stacked, in_use};
 use crate::integrator::collocation::error::{Judged, estimate_in_flight};
 use crate::integrator::collocation::modal_end::{Group, load, load_each, move_freely, pairs, twice};
-use crate::integrator::collocation::newton::{Linked, Solution, Tangent, Unknowns};
+use crate::integrator::collocation::newton::{FEW, Linked, Solution, Tangent, Unknowns};
 use crate::integrator::collocation::slip::{follow, follow_deviation};
 use crate::integrator::collocation::trial::{
     AxialLoads, Estimate, FreeResponse, LinkEnd, Scratch, SlipNodes, Source, Trial,
@@ -38,11 +38,19 @@ pub fn compute<const S: usize>(
     match unknowns.count {
         0 | 1 => compiled_for!(model.simd, A => step.compute::<1, A>(trial, scratch, &mut Equations::new(1))),
         2 => compiled_for!(model.simd, A => step.compute::<2, A>(trial, scratch, &mut Equations::new(2))),
+        FEW => compute_few(&step, trial, scratch),
         _ => compute_many(&step, trial, scratch),
     }
 }
 
-/// Of more than two unknowns, whose equations are on the heap: on the stack they would fill that of a small thread.
+/// Of a few unknowns, whose equations take room on the stack that others need not have.
+#[inline(never)]
+fn compute_few<const S: usize>(step: &Step<S>, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
+    let mut equations = Equations::<S, FEW>::new(FEW);
+    compiled_for!(step.model.simd, A => step.compute::<FEW, A>(trial, scratch, &mut equations))
+}
+
+/// Of many unknowns, whose equations are on the heap: on the stack they would fill that of a small thread.
 #[inline(never)]
 fn compute_many<const S: usize>(step: &Step<S>, trial: &mut Trial<S>, scratch: &mut Scratch<S>) -> Option<()> {
     let mut equations = scratch.many.take()?;

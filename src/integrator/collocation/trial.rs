@@ -6,7 +6,7 @@ use crate::beam::mode::ModeStates;
 use crate::force_error::{Deviation, MODES};
 use crate::integrator::collocation::coefficients::NodalMotion;
 use crate::integrator::collocation::elimination::Equations;
-use crate::integrator::collocation::newton::{Joined, Tangent};
+use crate::integrator::collocation::newton::{FEW, Joined, Tangent};
 use crate::link::{MAX_LINKS, MAX_PORTS, MAX_UNKNOWNS};
 use crate::math::nodal::Nodal;
 use crate::model::Model;
@@ -84,7 +84,7 @@ pub enum Source {
 pub struct Scratch<const S: usize> {
     pub(super) free: Box<FreeResponse<S>>,
     pub(super) joined: Joined<S>,
-    /// Equations of more than two unknown forces.
+    /// Equations of more than [`FEW`] unknown forces.
     pub(super) many: Option<Box<Equations<S, MAX_UNKNOWNS>>>,
     pub(crate) axial: AxialLoads<S>,
 }
@@ -98,7 +98,7 @@ impl<const S: usize> Scratch<S> {
         Self {
             free: Box::default(),
             joined: Joined::new(model),
-            many: (model.links.len() > 2).then(zeroed_box),
+            many: (model.links.len() > FEW).then(zeroed_box),
             axial: AxialLoads { loads: on_modes(), motion: on_modes(), next: on_modes(), deviation },
         }
     }
