@@ -39,6 +39,18 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
         assert "youngsModulus" not in "".join(contact.warnings)
 
 
+def test_stiffness_is_that_of_both_twin_contacts(tmp_path: Path) -> None:
+    """Also of a parallel contact with a compliance of its own."""
+    file = tmp_path / "modes.toml"
+    mode = "[[mode]]\nfrequency = 300.0\ncontact = 130.0\nparticipation = 0.01\nparallel = 130.0\n"
+    file.write_text(f"compliance = 5e-3\nparallel_compliance = 5.2e-3\n{mode}")
+    # The first contact stays open.
+    values: Values = {"beam.file": str(file), "effects.parallelContact": True, "contact.overtravel": -1e-3,
+                      "parallel.offset": -2e-3, "parallel.curvatureRadius": 1.0}  # fmt: skip
+    soft, own, stiff = (resting({**values, "spring.stiffness": k}, "parallel.force")[0] for k in (0.9, 1.0, 1.2))
+    assert (soft, stiff) == pytest.approx((0.9 * own, 1.2 * own), rel=1e-4)
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [
