@@ -8,6 +8,7 @@ import warnings
 import webbrowser
 from collections.abc import Callable
 from datetime import date
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Any
 
@@ -325,6 +326,9 @@ def line() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        # Where it goes to a file, an encoding may lack signs of units.
+        sys.stdout.reconfigure(errors="backslashreplace")
     given = line().parse_args(arguments)
     try:
         with warnings.catch_warnings():

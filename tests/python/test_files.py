@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterator
 from copy import deepcopy
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from threading import Barrier
 from typing import Any
@@ -515,6 +516,15 @@ def test_a_run_that_is_interrupted_says_so(monkeypatch: pytest.MonkeyPatch, caps
     monkeypatch.setattr("relay_contact.command.list_all", interrupted)
     assert main(["list"]) == 130
     assert capsys.readouterr().err == "\nrelay-contact: interrupted\n"
+
+
+def test_signs_that_an_output_does_not_have_end_no_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows, where what is printed goes to a file in the encoding of the country."""
+    printed = TextIOWrapper(BytesIO(), "cp1252")
+    monkeypatch.setattr("sys.stdout", printed)
+    assert main(["list", "--variables", "contact.resistance"]) == 0
+    printed.flush()
+    assert b"contact.resistance (output \\u03a9)" in printed.buffer.getvalue()
 
 
 def test_a_choice_in_a_file_has_its_name_if_it_is_given_by_its_number(tmp_path: Path) -> None:
