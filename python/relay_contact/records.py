@@ -204,7 +204,8 @@ def text(path: Path) -> Iterator[Channel]:
         heads = [tables.parted(cell) for each in tables.SEPARATORS if each in line for cell in tables.split(line, each)]
         heads = heads or [tables.parted(line.strip(tables.BLANK))]
         if any(name in TIME for name, _ in heads) or any(unit in ACCELERATIONS for _, unit in heads):
-            known |= {name: TIMES if name in TIME else ACCELERATIONS for name, _ in heads if name}
+            # The last such line: before it may stand the time of the measurement, `Time;12:30:00`.
+            known = {name: TIMES if name in TIME else ACCELERATIONS for name, _ in heads if name} or known
     if not known:
         raise RelayContactError(f"{path}: no line with the names of the columns, such as: time [s],acceleration [g]")
     table = tables.read(path, known)

@@ -49,7 +49,9 @@ def test_text_without_time_has_a_rate(tmp_path: Path) -> None:
         read(path)
     (record,) = read(path, rate=50e3)
     assert record.time == pytest.approx(TIME - 12.5, abs=1e-12)
-    path.write_text("time [s],acceleration\n" + "\n".join(f"{t},{a}" for t, a in zip(TIME, VALUES, strict=True)))
+    rows = "\n".join(f"{t},{a}" for t, a in zip(TIME, VALUES, strict=True))
+    # The first line is the time of day.
+    path.write_text(f"Time,12:30:00\ntime [s],acceleration\n{rows}")
     with pytest.raises(
         RelayContactError, match=r"no channel with an acceleration in g or m/s2; there are acceleration \(no"
     ):
