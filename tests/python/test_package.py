@@ -68,6 +68,9 @@ def test_an_input_course_is_linear_between_its_points() -> None:
         ({"friction_coefficient": 0.3, "effects_friction": "None"}, []),
         # Of the first contact, too.
         ({"second_minimumDuration": 1e-5}, []),
+        # Also of a course.
+        ({"inputs": {"time": [0, 1e-3], "pusher.displacement": [0, 1e-4]}}, ["pusher.displacement: not used without"]),
+        ({"inputs": {"time": [0, 1e-3], "coil.relativeCurrent": [1, 1]}}, []),
     ],
 )
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
