@@ -259,10 +259,11 @@ def tdms(path: Path) -> Iterator[Channel]:
     """Read a file of LabVIEW."""
     for group in asked("nptdms", path).TdmsFile.read(path).groups():
         for channel in group.channels():
-            timed = "wf_increment" in channel.properties
+            step, first = (channel.properties.get(f"wf_{name}", 0.0) for name in ("increment", "start_offset"))
+            time = first + step * np.arange(len(channel)) if step else None
             unit = str(channel.properties.get("unit_string", ""))
             clock = str(channel.properties.get("wf_xunit_string", "")).strip()
-            yield Channel(channel.name, unit, channel.time_track() if timed else None, channel[:], clock or "s")
+            yield Channel(channel.name, unit, time, channel[:], clock or "s")
 
 
 def mat(path: Path) -> Iterator[Channel]:
