@@ -573,6 +573,8 @@ def test_a_contact_is_interrupted_by_its_own_law_of_the_resistance(tmp_path: Pat
         contacts = replace(MILITARY.contacts, voltage=threshold, current=1.0)
         (tested,) = judged(relay, tmp_path, Shock("a", "", "measured", 30.0, 11e-3), contacts=contacts)
         assert tested.margin.linear == pytest.approx(tested.margin.margin, rel=1e-3)
+        # What is told of it at rest is all of its force, not what may be lost.
+        assert tested.margin.rest == {"closed contact": resting(relay.positions["own"], "contact.force")[0]}
     # A fifth of it is a fifth of what the force may lose.
     assert tested.margin.low < 0.8 * tested.margin.margin
     assert tested.margin.high > 1.1 * tested.margin.margin
