@@ -22,6 +22,7 @@ from identification_coverage import of_all, of_record, of_rough_curves, of_rough
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values, identification, write_table
 from relay_contact.command import main
+from relay_contact.component import sine
 from relay_contact.figures import save
 from relay_contact.identification import Identification, report
 from relay_contact.identification.fit import Fit, Set, Unknown
@@ -349,6 +350,15 @@ def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
     data = replace(data, over=np.array([1200.0, 1500.0, 2000.0]))
     assert laboratory.predict(data, tight).min() > 1e3
     assert np.abs(laboratory.correction(data, tight) - 1).min() > 1e-3
+    # A spring leaves its pusher long before the contact is interrupted.
+    pushed: Values = {"effects.pusher": "Prescribed", "contact.overtravel": -1e-4, "pusher.position": 12e-3,
+                      "pusher.displacement": 2e-4, "beam.stiffnessDamping": 1e-5}  # fmt: skip
+    data = replace(data, over=np.array([800.0]))
+    touch = float((laboratory.predict(data, pushed) * laboratory.correction(data, pushed))[0])
+    for part, interrupted in ((0.98, False), (1.02, True)):
+        with COMPONENT.started({**pushed, **sine(800.0, part * touch, 0.05)}) as contact:
+            contact.step(0.0, 0.07)
+            assert (contact.get("chatter.count") > 0) == interrupted
 
 
 @pytest.mark.parametrize(("damping", "beside"), [(2e-6, 1.0), (2e-9, 0.999)])
