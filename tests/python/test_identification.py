@@ -687,9 +687,11 @@ def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel
     write_table(ring, "time,displacement", np.column_stack([np.arange(20), np.sin(np.arange(20))]))
     with pytest.raises(RelayContactError, match=r"ring.csv:1: which position of the coil"):
         found(ring, relay=relay)
-    write_table(ring, "# position = on\novertravel,frequency", np.column_stack([np.full(5, 1e-4), np.full(5, 1e3)]))
-    with pytest.raises(RelayContactError, match="in the position on a pusher closes the contact: not allowed"):
-        found(ring, relay=relay, parameters=["beam.youngsModulus"])
+    # So do frequencies over the overtravel, and a bounce, for which the spring would come from where it is free.
+    for names, own in (("overtravel,frequency", (1e-4, 1e3)), ("speed,bounce", (0.05, 1e-4))):
+        write_table(ring, f"# position = on\n{names}", np.tile(own, (5, 1)))
+        with pytest.raises(RelayContactError, match="in the position on a pusher or gravity closes the contact"):
+            found(ring, relay=relay, parameters=["beam.youngsModulus"])
 
 
 @pytest.mark.parametrize(

@@ -89,9 +89,11 @@ class Laboratory:
             own = {**own, "solver.modes": MODES}
         found = {**values, **ALONE, **own, **measurement.settings}
         overtravel = self.overtravel(found)
-        if overtravel <= 0 and kind == FREQUENCY:
-            text = f"in the position {measurement.position} a pusher closes the contact: not allowed, allowed is one"
-            raise RelayContactError(f"{measurement.path}: {kind}: {text} that the overtravel closes")
+        touches = kind == BOUNCE and self.rest("preload.force", {**found, **TOUCHING}) > 0
+        if touches or (overtravel <= 0 and kind == FREQUENCY):
+            text = f"in the position {measurement.position} a pusher or gravity closes the contact"
+            allowed = "allowed is one that the overtravel closes"
+            raise RelayContactError(f"{measurement.path}: {kind}: {text}: not allowed, {allowed}")
         closed = kind in (RINGDOWN, RESPONSE, CHATTER) and not measurement.is_open
         if closed and overtravel <= 0 and self.rest("preload.force", found) <= 0:
             what = f"{measurement.kind}: in the position {measurement.position} the contact is open"
