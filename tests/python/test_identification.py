@@ -399,6 +399,9 @@ def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     ):
         assert any(re.search(told, note) for note in asked(tmp_path, data, *sought).notes), told
     assert asked(tmp_path, [force], "contact.overtravel", stiffness).notes == []
+    rubs: Values = {**measured.GUESSED, "effects.friction": "Coulomb"}
+    (told,) = asked(tmp_path, [force], "contact.overtravel", stiffness, guessed=rubs).notes
+    assert "without the friction of the relay's file" in told
     rows = np.transpose(np.broadcast_arrays(measured.FREQUENCY, 400.0, 20 * CLEAN["response"]))
     write_table(tmp_path / "strong.csv", "frequency [Hz],acceleration [m/s2],force [N]", rows)
     # Nine rows beside a resonance that overtravel, stiffness and rivet of the relay's file put elsewhere.

@@ -281,6 +281,8 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         "file that of this relay, and its model complete?"
         for each in found if abs(np.log(each.value / each.unknown.start)) > FAR
     ]  # fmt: skip
+    if any("Coulomb" in values.values() for values in relay.positions.values()):
+        notes.append("measurements are compared with a contact without the friction of the relay's file")
     for other in fit.rivals() if fit.unknowns else []:
         told = (f"{each.label} = {each.start * np.exp(x):.4g}" for each, x in zip(fit.unknowns, other, strict=False))
         notes.append(f"other values fit nearly as well: {', '.join(told)}; the intervals are those of the best alone")
