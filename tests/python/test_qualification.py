@@ -18,7 +18,7 @@ from component import COMPONENT, ROOT, resting
 from elements import Part, assembled
 from qualified import described, judged, placed
 from reference import Reference
-from relay_contact import Array, RelayContactError, Values
+from relay_contact import Array, RelayContactError, Values, pages
 from relay_contact.command import main
 from relay_contact.component import sine as vibration
 from relay_contact.qualification import FEW, Relay, Standard, assessment, judgement, plots, qualify, response, standards
@@ -312,6 +312,17 @@ def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
     first = replace(paper["vibration (sine)"].first, judged=replace(sine, margin=0.005, low=0.004))
     far = plots.margins([replace(paper["vibration (sine)"], models=[first])]).axes[0]
     assert [label.get_text() for label in far.get_xticklabels()][:3] == ["0.005", "0.01", "0.02"]
+
+
+def test_names_in_figures_are_no_formulas(tmp_path: Path) -> None:
+    """Also those of ticks; the marks of a logarithmic axis stay powers of ten."""
+    name = r"5 $ or \frac{$"
+    found = judged(described({}), tmp_path, *(Shock(each, "", "measured", 30.0, 11e-3) for each in (name, "b")))
+    margins, course, *_ = plots.margins(found), *plots.position_figures(found, MILITARY.contacts)
+    course.axes[0].set(xscale="log", title=name)
+    ticks, texts = (re.findall("<!-- (.*) -->", pages.svg(figure)) for figure in (margins, course))
+    assert f"{name}: pass" in ticks
+    assert {name, r"$\mathdefault{10^{1}}$"} < set(texts)
 
 
 def test_no_legend_of_a_figure_is_cut_off(paper: Assessment) -> None:
