@@ -488,6 +488,9 @@ def test_a_disk_that_is_full_leaves_nothing_and_names_the_file(
     with pytest.raises(OSError, match=r"No space left on device: .*found.csv"):
         write(tmp_path / "found.csv")
     assert not list(tmp_path.iterdir())
+    # Where nothing is written there is nothing to delete either.
+    with pytest.raises(OSError, match=r"aaa\.csv'$"):
+        write(tmp_path / f"{240 * 'a'}.csv")
 
 
 def test_what_was_read_is_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
