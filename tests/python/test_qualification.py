@@ -28,6 +28,7 @@ from relay_contact.qualification.page import write
 from relay_contact.qualification.response import interrupting_force, respond
 from relay_contact.qualification.results import Assessment, Finding, Tested
 from relay_contact.qualification.trials import Specimen, steady
+from relay_contact.qualification.words import rows
 
 G = 9.80665
 PUBLISHED: Values = {"effects.axialForce": "FromPreload"}
@@ -288,6 +289,13 @@ def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
     for names in (["low", "margin", "high"], ["chance low", "chance", "chance high"]):
         assert (run[names].diff(axis=1)[names[1:]] >= 0).all(axis=None)
     assert left["verdict"].droplevel("model").to_dict() == {"shock, 213 B": "not run", "shock, 213 C": "not run"}
+
+
+def test_margins_that_are_all_above_the_largest_are_told_so(paper: Assessment) -> None:
+    tested = paper["shock, 213 A"]
+    least, *others = [replace(each, judged=replace(each.margin, margin=1000.0)) for each in tested.models]
+    assert rows(replace(tested, models=[least, *others]))[0][3] == "> 1000"
+    assert rows(replace(tested, models=[replace(least, judged=tested.margin), *others]))[0][3].endswith(" to > 1000")
 
 
 def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
