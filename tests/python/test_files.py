@@ -255,6 +255,7 @@ corePosition = 1e-4
          "13: coil.relativeCurrent = 1: not allowed, the magnet does not hold the armature, which rests 0.4 mm from"),
         (HELD + "[[position]]\nparameters.coil.relativeCurrent = 1.0\n[uncertainty]\narmature.holdForc = 0.1\n",
          "16: armature.holdForc: no such variable; did you mean armature.holdForce"),
+        ("parameters.environment.gravity = 9.8\naxes.lateral = [1.0]\n", "3: axes.lateral = .*gravity would act"),
         ("[pusher]\nposition = 1e-2\ndisplacement = 0.0\n[axes]\nlateral = [1.0]\n", "6: axes.lateral = .*other parts"),
         ("[uncertainty]\nfixed.spring.thickness = 0.1\n", "3: uncertainty.fixed.spring.thickness: no such entry in"),
         ("uncertainty.tip.mass = {distribution = 'uniform'}", "2: uncertainty.tip.mass = .*a uniform .* has part"),

@@ -252,6 +252,9 @@ def participations(path: Path, axis: str, own: list[float], positions: dict[str,
         if values.get("fixed.file") or values.get("effects.pusher", "None") != "None":
             text = "further axes are those of the moving contact's spring alone, without other parts"
             raise schema.refused(path, ("axes", axis), own, text)
+        if values.get("environment.gravity"):
+            text = "environment.gravity would act along this axis, not along the normal"
+            raise schema.refused(path, ("axes", axis), own, text)
         file = str(values.get("beam.file", ""))
         modes = read_toml(Path(file)).get("mode", []) if file else []
         if axis == NORMAL or len(modes) != len(own):
