@@ -88,6 +88,15 @@ def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
     assert effects["spring.stiffness"] == pytest.approx(0.05, rel=5e-3)
 
 
+def test_a_draw_that_is_refused_is_told_to_be_one() -> None:
+    """Beyond the ends of its interval, at which a file is read."""
+    values: Values = {"beam.file": str(MODES), "contact.overtravel": 8e-4}
+    test = Shock("slow", "", "from memory", 20.0, 0.1)
+    position = placed(described(values, {"spring.compliance": Distribution(part=0.5)}), test)
+    with pytest.raises(RelayContactError, match=r"a draw of the uncertain parameters, spring.compliance = 0.5: "):
+        position.margins(test, 1.0)
+
+
 def test_unknown_entries_are_explained(tmp_path: Path) -> None:
     file = tmp_path / "relay.toml"
     entry = "uncertainty.spring.segment.3.thickness"
