@@ -287,6 +287,15 @@ def test_errors_in_a_relay_file_have_their_line(tmp_path: Path, text: str, messa
         Relay.read(path, COMPONENT)
 
 
+def test_what_is_uncertain_of_a_second_contact_is_used(tmp_path: Path) -> None:
+    """The blow that tells what is used reaches it over a gap of 0.3 mm, and over 1 mm by a stiffer spring."""
+    path, names = tmp_path / "relay.toml", ["second.gap", "second.curvatureRadius", "second.damping"]
+    uncertain = "".join(f"uncertainty.{name} = 0.1\n" for name in names)
+    for spring in ("", "parameters.second.gap = 1e-3\nparameters.beam.length = 7e-3\n"):
+        path.write_text(f"parameters.effects.secondContact = true\n{spring}{uncertain}")
+        assert list(Relay.read(path, COMPONENT).uncertainty) == names
+
+
 def test_a_relay_names_its_spring_where_the_component_carries_another(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
