@@ -26,9 +26,9 @@ from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.page import write
 from relay_contact.qualification.response import interrupting_force, respond
-from relay_contact.qualification.results import Assessment, Finding, Tested
+from relay_contact.qualification.results import Assessment, Chance, Finding, Tested
 from relay_contact.qualification.trials import Specimen, steady
-from relay_contact.qualification.words import rows
+from relay_contact.qualification.words import contributions, rows
 
 G = 9.80665
 PUBLISHED: Values = {"effects.axialForce": "FromPreload"}
@@ -296,6 +296,12 @@ def test_margins_that_are_all_above_the_largest_are_told_so(paper: Assessment) -
     least, *others = [replace(each, judged=replace(each.margin, margin=1000.0)) for each in tested.models]
     assert rows(replace(tested, models=[least, *others]))[0][3] == "> 1000"
     assert rows(replace(tested, models=[replace(least, judged=tested.margin), *others]))[0][3].endswith(" to > 1000")
+
+
+def test_what_hardly_moves_a_margin_is_not_said_to_be_missing() -> None:
+    chance = Chance(0.0, 0.0, 1e-4, {"second.gap": 1e-9}, {"second.gap": 0.0}, 0, 0.0)
+    assert contributions(chance) == "nothing: what the relay's file names hardly moves it"
+    assert contributions(replace(chance, effects={})) == "nothing: the relay's file names no uncertainty"
 
 
 def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:

@@ -127,7 +127,8 @@ def contributions(chance: Chance) -> str:
     """Return what contributes most to an interval, in words."""
     found = sorted(chance.effects.items(), key=lambda item: -item[1])[:3]
     told = [f"{TOLD.get(name, name)} ± {three(100 * effect)} %" for name, effect in found if effect > 1e-4]
-    return ", ".join(told) or "nothing: the relay's file names no uncertainty"
+    nothing = "what the relay's file names hardly moves it" if found else "the relay's file names no uncertainty"
+    return ", ".join(told) or f"nothing: {nothing}"
 
 
 def tighten(chance: Chance) -> str:
