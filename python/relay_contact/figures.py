@@ -1,6 +1,7 @@
 """Colours, numbers and files of all figures."""
 
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,7 +42,8 @@ def verbatim(figure: "Figure") -> "Figure":
 
     for text in figure.findobj(Text):
         if isinstance(text, Text):
-            text.set_text(text.get_text().replace("$", r"\$"))
+            # Once, however often it is drawn.
+            text.set_text(re.sub(r"(?<!\\)\$", r"\\$", text.get_text()))
     return figure
 
 
