@@ -731,6 +731,7 @@ def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> N
         ({"parameters": ["spring.thickness"]}, "spring.thickness: no such entry in the spring file"),
         # Which would be written nowhere.
         ({"parameters": ["spring.stiffness"]}, "spring.stiffness: no such entry in the spring file.*youngsModulus"),
+        ({"parameters": ["fixed.spring.stiffness"]}, "fixed.spring.stiffness: of the spring of the fixed contact: not"),
         ({"parameters": ["beam.massDamping"]}, "beam.massDamping = 0 in the relay's file: not allowed"),
         ({"relay": ROOT / "none.toml"}, "no such file, and no relay of this name"),
     ):
