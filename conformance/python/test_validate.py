@@ -11,6 +11,7 @@ from fmpy.validation import validate_fmu
 from xmlschema import XMLSchema
 
 from component import FMU, PLAIN, ROOT, SPRUNG
+from relay_contact import Component, RelayContactError, run
 from results import record
 
 
@@ -18,6 +19,11 @@ from results import record
 def test_fmpy_finds_no_problem(fmu: Path) -> None:
     assert validate_fmu(str(fmu)) == []
     record("FMPy", fmpy.__version__, "validation")
+
+
+def test_the_python_package_refuses_a_component_without_names_of_choices() -> None:
+    with pytest.raises(RelayContactError, match=r"RelayContact-plain.fmu: a variant for other tools, "):
+        run("at-rest", component=Component(PLAIN), friction_coefficient=0.3)
 
 
 def test_package_holds_documentation_licences_and_icon() -> None:

@@ -8,13 +8,14 @@ import warnings
 import webbrowser
 from collections.abc import Callable
 from datetime import date
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from relay_contact.component import Component, Value, units
-from relay_contact.files import RelayContactError, at_once, fmu_path, page_path, read_toml, scenes, spare
+from relay_contact.files import RelayContactError, at_once, digest, fmu_path, page_path, read_toml, scenes, spare
 from relay_contact.scene import Scene, run, write_table
 from relay_contact.spring import SPRING_FILES
 
@@ -34,6 +35,8 @@ EXAMPLES = """examples:
 
 TOLD = ["contact.lastOpening", "contact.lastClosing", "chatter.count", "chatter.longestInterruption", "solver.steps"]
 """Outputs whose last value is printed."""
+LONGEST = 150
+"""Bytes of what is changed in the name of a table."""
 IDENTIFY = """Find overtravel, stiffness, rivet mass and damping of a relay from measurements, with intervals.
 Write them into a copy of the relay's file, and onto a page. The columns of a file say what was measured, in which unit:
 
@@ -113,10 +116,15 @@ def run_scene(given: argparse.Namespace) -> None:
     titled = f"{scene.title}{'; changed: ' if words else ''}{', '.join(words)}"
     names = list(dict.fromkeys([*scene.outputs, *(component.name(name) for name in given.output)]))
     told = list(dict.fromkeys([*names, *TOLD]))
-    table = given.out / f"{','.join([Path(given.scene).stem, *words])}.csv"
+    stem, changed = Path(given.scene).stem, ",".join(words)
+    # More than a file system takes.
+    changed = changed if len(changed.encode()) < LONGEST else digest(changed.encode())
+    table = given.out / f"{stem}{',' if words else ''}{changed}.csv"
     spare([table], [scene.file] if scene.file else [])
     given.out.mkdir(parents=True, exist_ok=True)
     result = run(scene, outputs=told, stop=given.stop, step=given.step, component=component, progress=True)
+    columns = ["time", *names]
+    write_table(table, ",".join(columns), np.column_stack([result[name] for name in columns]))
     print(titled, "Ranges at communication points; step.* have the extremes between them:", sep="\n")
     width = max(map(len, result.columns))
     for name in names:
@@ -124,8 +132,6 @@ def run_scene(given: argparse.Namespace) -> None:
         print(f"  {name:{width}}  {values.min():.6g} to {values.max():.6g} {result.units[name]}".rstrip())
     for name in TOLD:
         print(f"  {name:{width}}  {result[name][-1]:.9g} {result.units[name]}".rstrip() + " at the end")
-    columns = ["time", *names]
-    write_table(table, ",".join(columns), np.column_stack([result[name] for name in columns]))
     print(table, draw(table, titled, sweep_of(scene.values)), sep="\n")
 
 
@@ -325,6 +331,9 @@ def line() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        # Where it goes to a file, an encoding may lack signs of units.
+        sys.stdout.reconfigure(errors="backslashreplace")
     given = line().parse_args(arguments)
     try:
         with warnings.catch_warnings():

@@ -38,7 +38,7 @@ class Interruptions:
     duration: Array
     time: Array
     resistance: Array
-    counted: int = 0
+    counted: int | None = None
     """How many the component counted itself, if the table has it."""
 
     @property
@@ -50,7 +50,7 @@ class Interruptions:
     def figures(self) -> dict[str, float]:
         """Return number, longest, median and total duration (s); not durations where more were counted than seen."""
         some = len(self.duration) > 0
-        if self.counted > len(self.duration):
+        if self.counted and self.counted > len(self.duration):
             return {"count": float(self.counted)} | dict.fromkeys(("longest", "median", "total"), math.nan)
         return {
             "count": float(len(self.duration)), "longest": float(self.duration.max()) if some else 0.0,
@@ -112,7 +112,7 @@ def simulated(path: Path, threshold: float) -> Interruptions:
     columns = read_table(path)
     if not {"time", RESISTANCE} <= columns.keys():
         raise RelayContactError(f"{path}: no columns time and {RESISTANCE}: run it with --output {RESISTANCE}")
-    counted = int(columns[COUNT][-1]) if COUNT in columns else 0
+    counted = int(columns[COUNT][-1]) if COUNT in columns else None
     return replace(interruptions(columns["time"], columns[RESISTANCE], threshold), counted=counted)
 
 
@@ -151,8 +151,9 @@ def compare(
         if shortest < 10 * step:
             text = "shorter steps tell interruptions better"
             notes.append(f"The {name} has a value every {three(1e6 * step)} µs: {text}.")
-    if own.counted > len(own.duration):
-        text = f"by its own chatter.resistanceThreshold, the resistance shows {len(own.duration)}"
+    if own.counted is not None and own.counted != len(own.duration):
+        limits = "chatter.resistanceThreshold and chatter.minimumDuration"
+        text = f"by its own {limits}, the resistance shows {len(own.duration)}"
         notes.append(f"The component counted {own.counted} interruptions {text}.")
     if shift is None:
         some = len(own.start) and len(other.start)

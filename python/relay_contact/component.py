@@ -124,6 +124,14 @@ class FMU2Functions(fmi2.FMU2Slave):  # type: ignore[misc]
         self.fmi2FreeInstance(self.component)
 
 
+def choices(path: Path, variable: Any) -> dict[str, int]:  # noqa: ANN401
+    """Return the numbers of the choices of a variable, by name; one that has none is refused."""
+    if variable.type != "Enumeration":
+        text = "a variant for other tools, whose choices are numbers: not allowed, allowed is RelayContact.fmu"
+        raise RelayContactError(f"{path}: {text}")
+    return {str(each.name): int(each.value) for each in variable.declaredType.items}
+
+
 class Component:
     """The component as a file: its description, and the folder it is unpacked in."""
 
@@ -141,7 +149,8 @@ class Component:
             raise RelayContactError(f"{self.path} {text}")
         self.description = read_model_description(str(self.path))
         self.variables = known = {variable.name: variable for variable in self.description.modelVariables}
-        self.choices = cache(lambda name: {str(each.name): int(each.value) for each in known[name].declaredType.items})
+        own = self.path
+        self.choices = cache(lambda name: choices(own, known[name]))
         """The numbers of the choices of a variable, by name."""
         if folder is None:
             folder = Path(mkdtemp())

@@ -1,6 +1,7 @@
 """Colours, numbers and files of all figures."""
 
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,7 +35,19 @@ def three(value: float) -> str:
     return next(text for text in texts if (float(text) < 1) == (value < 1) and (float(text) > 1) == (value > 1))
 
 
+def verbatim(figure: "Figure") -> "Figure":
+    """Return a figure whose texts are no formulas, but those of ticks: users' names may have signs of dollars."""
+    # It takes long to import.
+    from matplotlib.text import Text
+
+    for text in figure.findobj(Text):
+        if isinstance(text, Text):
+            # Once, however often it is drawn.
+            text.set_text(re.sub(r"(?<!\\)\$", r"\\$", text.get_text()))
+    return figure
+
+
 def save(figure: "Figure", path: Path) -> None:
     """Write a figure, as a whole or not at all."""
     with at_once(path) as part:
-        figure.savefig(part, format="png", dpi=130)
+        verbatim(figure).savefig(part, format="png", dpi=130)

@@ -5,7 +5,7 @@ import os
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import get_ident
 from typing import Any
@@ -81,7 +81,9 @@ def at_once(path: str | Path) -> Iterator[Path]:
     except OSError as error:
         raise OSError(error.errno, error.strerror or str(error), str(path)) from error
     finally:
-        part.unlink(missing_ok=True)
+        # What cannot be written, as to a medium for reading alone, is not there.
+        with suppress(OSError):
+            part.unlink()
 
 
 def write_at_once(path: Path, text: str) -> None:

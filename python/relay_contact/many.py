@@ -3,7 +3,7 @@
 import contextvars
 import os
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from contextvars import ContextVar
 from functools import cache
@@ -12,7 +12,7 @@ from threading import Event
 from typing import TYPE_CHECKING, TypeVar
 
 from relay_contact.component import KEPT, Component, Value, Values, default_component, units
-from relay_contact.files import RelayContactError
+from relay_contact.files import RelayContactError, shown
 from relay_contact.scene import Scene, progress_bar
 
 if TYPE_CHECKING:
@@ -115,6 +115,12 @@ def run_many(
     component = component or default_component()
     # A text alone would be a scene for each of its letters.
     cases = [scenes] if isinstance(scenes, str | Path | Scene) else list(scenes)
+    for number, case in enumerate(cases):
+        # Else all that ran before it would be lost.
+        scene, changes = case if isinstance(case, tuple) and len(case) == 2 else (case, {})
+        if not (isinstance(scene, str | Path | Scene) and isinstance(changes, Mapping)):
+            text = "not allowed, allowed is a scene, alone or as (scene, {name: value})"
+            raise RelayContactError(f"scenes[{number}] = {shown(case)}: {text}")
     read = cache(Scene.read)
     names = [component.name(name) for name in ([outputs] if isinstance(outputs, str) else outputs or [])]
 
@@ -152,6 +158,6 @@ def run_many(
     named = [name for part in (0, 1) for each in rows for name in each[part]]
     columns = dict.fromkeys(["scene", *named, "warning", "error"])
     table = pd.DataFrame([{**changed, **found, **told} for changed, found, told in rows], columns=list(columns))
-    shown = units(component.description)
-    table.attrs["units"] = {name: shown[name].si for name in columns if name in shown}
+    known = units(component.description)
+    table.attrs["units"] = {name: known[name].si for name in columns if name in known}
     return table

@@ -8,6 +8,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib.figure import Figure
 
+from relay_contact.figures import verbatim
 from relay_contact.files import RelayContactError
 
 STYLE: Any = {
@@ -26,6 +27,7 @@ Table = tuple[Sequence[str], Iterable[Sequence[str]]]
 
 def svg(figure: Figure) -> str:
     """Return a figure as a picture for a page."""
+    verbatim(figure)
     if engine := figure.get_layout_engine():
         # Alone: matplotlib draws a figure with a layout twice, the first time for nothing else.
         engine.execute(figure)

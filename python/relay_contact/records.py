@@ -204,7 +204,8 @@ def text(path: Path) -> Iterator[Channel]:
         heads = [tables.parted(cell) for each in tables.SEPARATORS if each in line for cell in tables.split(line, each)]
         heads = heads or [tables.parted(line.strip(tables.BLANK))]
         if any(name in TIME for name, _ in heads) or any(unit in ACCELERATIONS for _, unit in heads):
-            known |= {name: TIMES if name in TIME else ACCELERATIONS for name, _ in heads if name}
+            # The last such line: before it may stand the time of the measurement, `Time;12:30:00`.
+            known = {name: TIMES if name in TIME else ACCELERATIONS for name, _ in heads if name} or known
     if not known:
         raise RelayContactError(f"{path}: no line with the names of the columns, such as: time [s],acceleration [g]")
     table = tables.read(path, known)
@@ -258,10 +259,11 @@ def tdms(path: Path) -> Iterator[Channel]:
     """Read a file of LabVIEW."""
     for group in asked("nptdms", path).TdmsFile.read(path).groups():
         for channel in group.channels():
-            timed = "wf_increment" in channel.properties
+            step, first = (channel.properties.get(f"wf_{name}", 0.0) for name in ("increment", "start_offset"))
+            time = first + step * np.arange(len(channel)) if step else None
             unit = str(channel.properties.get("unit_string", ""))
             clock = str(channel.properties.get("wf_xunit_string", "")).strip()
-            yield Channel(channel.name, unit, channel.time_track() if timed else None, channel[:], clock or "s")
+            yield Channel(channel.name, unit, time, channel[:], clock or "s")
 
 
 def mat(path: Path) -> Iterator[Channel]:

@@ -183,10 +183,12 @@ class Scene:
     def idle(self, component: Component) -> list[str]:
         """Return in words which values are not used, as nothing says whether the scene has what uses them."""
         values, told = self.values, []
-        for name in values.keys() & component.variables.keys():
-            needed = lacking(component, name, [values]) if values[name] != component.start(name) else ""
+        given = values | self.table
+        for name in given.keys() & component.variables.keys():
+            own = f" = {values[name]}" if name not in self.table else ""
+            needed = lacking(component, name, [values]) if np.any(given[name] != component.start(name)) else ""
             if needed and needed.partition(" ")[0] not in values:
-                told.append(f"{name} = {values[name]}: not used without {needed}")
+                told.append(f"{name}{own}: not used without {needed}")
         return sorted(told)
 
     @contextmanager

@@ -23,7 +23,7 @@ MODULUS = "youngs_modulus"
 WHOLE = "stiffness"
 STIFFNESS = f"{PREFIX}{WHOLE}"
 ENDS = ("", "_start", "_end")
-RIGIDITY = {MODULUS: 1.0, "clamp_stiffness": 1.0, "frequency": 0.5, "compliance": -1.0}
+RIGIDITY = {MODULUS: 1.0, "clamp_stiffness": 1.0, "frequency": 0.5, "compliance": -1.0, "parallel_compliance": -1.0}
 """Entries that change with the bending stiffness, with their power of it."""
 TABLES = ("segment", "mass", "mode")
 

@@ -91,8 +91,14 @@ def test_interruptions_between_the_values_of_a_run(tmp_path: Path) -> None:
         assert found.notes[0] == "The run has a value every 500 µs: shorter steps tell interruptions better."
         assert found.rows[0] == ["count", *(("0", "3", "0") if count == 2 else ("3", "3", "1.00"))]
         assert found.rows[1][1:] == (["0 µs", "250 µs", "0"] if count == 2 else ["unknown", "250 µs", ""])
-    own = "The component counted 3 interruptions by its own chatter.resistanceThreshold, "
-    assert found.notes[1] == own + "the resistance shows 0."
+    own = "interruptions by its own chatter.resistanceThreshold and chatter.minimumDuration, the resistance shows"
+    assert found.notes[1] == f"The component counted 3 {own} 0."
+    # Those that are shorter than what the component counts are in the resistance, and in the comparison.
+    fine = tmp_path / "fine.csv"
+    write_table(fine, ",".join(names), np.column_stack((TIME, resistance(0.0, 1.0), np.minimum(whole, 2))))
+    short = compare(fine, log)
+    assert short.rows[0] == ["count", "3", "3", "1.00"]
+    assert f"The component counted 2 {own} 3." in short.notes
     # The other way around, and where neither has any.
     log.write_text("time [ms],resistance [Ohm]\n0,0.05\n10,0.05\n")
     assert [compare(table, log).notes[at] for at in (0, 1)] == [

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterator
 from copy import deepcopy
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from threading import Barrier
 from typing import Any
@@ -254,6 +255,7 @@ corePosition = 1e-4
          "13: coil.relativeCurrent = 1: not allowed, the magnet does not hold the armature, which rests 0.4 mm from"),
         (HELD + "[[position]]\nparameters.coil.relativeCurrent = 1.0\n[uncertainty]\narmature.holdForc = 0.1\n",
          "16: armature.holdForc: no such variable; did you mean armature.holdForce"),
+        ("parameters.environment.gravity = 9.8\naxes.lateral = [1.0]\n", "3: axes.lateral = .*gravity would act"),
         ("[pusher]\nposition = 1e-2\ndisplacement = 0.0\n[axes]\nlateral = [1.0]\n", "6: axes.lateral = .*other parts"),
         ("[uncertainty]\nfixed.spring.thickness = 0.1\n", "3: uncertainty.fixed.spring.thickness: no such entry in"),
         ("uncertainty.tip.mass = {distribution = 'uniform'}", "2: uncertainty.tip.mass = .*a uniform .* has part"),
@@ -283,6 +285,15 @@ def test_errors_in_a_relay_file_have_their_line(tmp_path: Path, text: str, messa
     path.write_bytes((PAPER + text).encode(errors="surrogateescape"))
     with pytest.raises(RelayContactError, match=f"^{re.escape(str(path))}:{message}"):
         Relay.read(path, COMPONENT)
+
+
+def test_what_is_uncertain_of_a_second_contact_is_used(tmp_path: Path) -> None:
+    """The blow that tells what is used reaches it over a gap of 0.3 mm, and over 1 mm by a stiffer spring."""
+    path, names = tmp_path / "relay.toml", ["second.gap", "second.curvatureRadius", "second.damping"]
+    uncertain = "".join(f"uncertainty.{name} = 0.1\n" for name in names)
+    for spring in ("", "parameters.second.gap = 1e-3\nparameters.beam.length = 7e-3\n"):
+        path.write_text(f"parameters.effects.secondContact = true\n{spring}{uncertain}")
+        assert list(Relay.read(path, COMPONENT).uncertainty) == names
 
 
 def test_a_relay_names_its_spring_where_the_component_carries_another(
@@ -487,6 +498,9 @@ def test_a_disk_that_is_full_leaves_nothing_and_names_the_file(
     with pytest.raises(OSError, match=r"No space left on device: .*found.csv"):
         write(tmp_path / "found.csv")
     assert not list(tmp_path.iterdir())
+    # Where nothing is written there is nothing to delete either.
+    with pytest.raises(OSError, match=r"aaa\.csv'$"):
+        write(tmp_path / f"{240 * 'a'}.csv")
 
 
 def test_what_was_read_is_not_written_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -515,6 +529,15 @@ def test_a_run_that_is_interrupted_says_so(monkeypatch: pytest.MonkeyPatch, caps
     monkeypatch.setattr("relay_contact.command.list_all", interrupted)
     assert main(["list"]) == 130
     assert capsys.readouterr().err == "\nrelay-contact: interrupted\n"
+
+
+def test_signs_that_an_output_does_not_have_end_no_command(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows, where what is printed goes to a file in the encoding of the country."""
+    printed = TextIOWrapper(BytesIO(), "cp1252")
+    monkeypatch.setattr("sys.stdout", printed)
+    assert main(["list", "--variables", "contact.resistance"]) == 0
+    printed.flush()
+    assert b"contact.resistance (output \\u03a9)" in printed.buffer.getvalue()
 
 
 def test_a_choice_in_a_file_has_its_name_if_it_is_given_by_its_number(tmp_path: Path) -> None:

@@ -22,6 +22,7 @@ from identification_coverage import of_all, of_record, of_rough_curves, of_rough
 from reference import Reference
 from relay_contact import Array, RelayContactError, Values, identification, write_table
 from relay_contact.command import main
+from relay_contact.component import sine
 from relay_contact.figures import save
 from relay_contact.identification import Identification, report
 from relay_contact.identification.fit import Fit, Set, Unknown
@@ -349,6 +350,15 @@ def test_levels_of_chatter_are_those_of_the_second_solution() -> None:
     data = replace(data, over=np.array([1200.0, 1500.0, 2000.0]))
     assert laboratory.predict(data, tight).min() > 1e3
     assert np.abs(laboratory.correction(data, tight) - 1).min() > 1e-3
+    # A spring leaves its pusher long before the contact is interrupted.
+    pushed: Values = {"effects.pusher": "Prescribed", "contact.overtravel": -1e-4, "pusher.position": 12e-3,
+                      "pusher.displacement": 2e-4, "beam.stiffnessDamping": 1e-5}  # fmt: skip
+    data = replace(data, over=np.array([800.0]))
+    touch = float((laboratory.predict(data, pushed) * laboratory.correction(data, pushed))[0])
+    for part, interrupted in ((0.98, False), (1.02, True)):
+        with COMPONENT.started({**pushed, **sine(800.0, part * touch, 0.05)}) as contact:
+            contact.step(0.0, 0.07)
+            assert (contact.get("chatter.count") > 0) == interrupted
 
 
 @pytest.mark.parametrize(("damping", "beside"), [(2e-6, 1.0), (2e-9, 0.999)])
@@ -389,6 +399,9 @@ def test_data_that_do_not_agree_are_told(tmp_path: Path) -> None:
     ):
         assert any(re.search(told, note) for note in asked(tmp_path, data, *sought).notes), told
     assert asked(tmp_path, [force], "contact.overtravel", stiffness).notes == []
+    rubs: Values = {**measured.GUESSED, "effects.friction": "Coulomb"}
+    (told,) = asked(tmp_path, [force], "contact.overtravel", stiffness, guessed=rubs).notes
+    assert "without the friction of the relay's file" in told
     rows = np.transpose(np.broadcast_arrays(measured.FREQUENCY, 400.0, 20 * CLEAN["response"]))
     write_table(tmp_path / "strong.csv", "frequency [Hz],acceleration [m/s2],force [N]", rows)
     # Nine rows beside a resonance that overtravel, stiffness and rivet of the relay's file put elsewhere.
@@ -677,9 +690,11 @@ def test_a_contact_that_a_pusher_closes_is_identified_by_its_negative_overtravel
     write_table(ring, "time,displacement", np.column_stack([np.arange(20), np.sin(np.arange(20))]))
     with pytest.raises(RelayContactError, match=r"ring.csv:1: which position of the coil"):
         found(ring, relay=relay)
-    write_table(ring, "# position = on\novertravel,frequency", np.column_stack([np.full(5, 1e-4), np.full(5, 1e3)]))
-    with pytest.raises(RelayContactError, match="in the position on a pusher closes the contact: not allowed"):
-        found(ring, relay=relay, parameters=["beam.youngsModulus"])
+    # So do frequencies over the overtravel, and a bounce, for which the spring would come from where it is free.
+    for names, own in (("overtravel,frequency", (1e-4, 1e3)), ("speed,bounce", (0.05, 1e-4))):
+        write_table(ring, f"# position = on\n{names}", np.tile(own, (5, 1)))
+        with pytest.raises(RelayContactError, match="in the position on a pusher or gravity closes the contact"):
+            found(ring, relay=relay, parameters=["beam.youngsModulus"])
 
 
 @pytest.mark.parametrize(
@@ -716,6 +731,7 @@ def test_an_identification_of_unknown_parameters_is_refused(tmp_path: Path) -> N
         ({"parameters": ["spring.thickness"]}, "spring.thickness: no such entry in the spring file"),
         # Which would be written nowhere.
         ({"parameters": ["spring.stiffness"]}, "spring.stiffness: no such entry in the spring file.*youngsModulus"),
+        ({"parameters": ["fixed.spring.stiffness"]}, "fixed.spring.stiffness: of the spring of the fixed contact: not"),
         ({"parameters": ["beam.massDamping"]}, "beam.massDamping = 0 in the relay's file: not allowed"),
         ({"relay": ROOT / "none.toml"}, "no such file, and no relay of this name"),
     ):

@@ -164,6 +164,14 @@ def test_an_unknown_output_is_refused_before_anything_runs() -> None:
         run_many([CHATTER], outputs=["contact.forze"], component=COMPONENT)
 
 
+@pytest.mark.parametrize("wrong", [[CHATTER, {}], (CHATTER, None), (CHATTER, {}, 1), {"tip.mass": 1e-4}, None])
+def test_a_row_that_is_no_scene_is_refused_before_anything_runs(wrong: Any) -> None:  # noqa: ANN401
+    done: list[int] = []
+    with pytest.raises(RelayContactError, match=r"scenes\[1\] = .*: not allowed, allowed is a scene, alone or as \(sc"):
+        run_many([CHATTER, wrong], component=COMPONENT, progress=done.append)
+    assert not done
+
+
 def test_a_warning_stands_in_its_row() -> None:
     unused: Values = {"beam.thickness": 1.23e-4}
     with warnings.catch_warnings():

@@ -68,6 +68,9 @@ def test_an_input_course_is_linear_between_its_points() -> None:
         ({"friction_coefficient": 0.3, "effects_friction": "None"}, []),
         # Of the first contact, too.
         ({"second_minimumDuration": 1e-5}, []),
+        # Also of a course.
+        ({"inputs": {"time": [0, 1e-3], "pusher.displacement": [0, 1e-4]}}, ["pusher.displacement: not used without"]),
+        ({"inputs": {"time": [0, 1e-3], "coil.relativeCurrent": [1, 1]}}, []),
     ],
 )
 @pytest.mark.filterwarnings("ignore::relay_contact.RelayContactWarning")
@@ -150,6 +153,11 @@ def test_the_command_runs_a_scene_as_asked(tmp_path: Path, capsys: pytest.Captur
     assert f" {force.min():.6g} to {force.max():.6g} N\n" in printed
     assert printed.startswith("The published 1 kHz run; changed: excitation.frequency=500\n")
     assert np.ptp(table["tip.velocity"]) > 0
+    # In a file's name there is no room for all that may be changed.
+    sizes = {name: COMPONENT.start(name) for name in COMPONENT.variables if name.startswith(("beam.", "tip.mass"))}
+    changes = [part for name, value in sizes.items() if value for part in ("--set", f"{name}={value}")]
+    assert main(["run", "paper-1khz", *options, *changes]) == 0
+    assert sorted(path.suffix for path in tmp_path.glob("paper-1khz,????????????????.*")) == [".csv", ".png"]
 
 
 def test_the_command_passes_on_all_options_of_a_qualification(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ from component import COMPONENT, ROOT, resting
 from elements import Part, assembled
 from qualified import described, judged, placed
 from reference import Reference
-from relay_contact import Array, RelayContactError, Values
+from relay_contact import Array, RelayContactError, Values, pages
 from relay_contact.command import main
 from relay_contact.component import sine as vibration
 from relay_contact.qualification import FEW, Relay, Standard, assessment, judgement, plots, qualify, response, standards
@@ -26,8 +26,9 @@ from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
 from relay_contact.qualification.page import write
 from relay_contact.qualification.response import interrupting_force, respond
-from relay_contact.qualification.results import Assessment, Finding, Tested
+from relay_contact.qualification.results import Assessment, Chance, Finding, Tested
 from relay_contact.qualification.trials import Specimen, steady
+from relay_contact.qualification.words import contributions, rows
 
 G = 9.80665
 PUBLISHED: Values = {"effects.axialForce": "FromPreload"}
@@ -290,6 +291,19 @@ def test_page_and_tables_show_verdict_and_margins(paper: Assessment) -> None:
     assert left["verdict"].droplevel("model").to_dict() == {"shock, 213 B": "not run", "shock, 213 C": "not run"}
 
 
+def test_margins_that_are_all_above_the_largest_are_told_so(paper: Assessment) -> None:
+    tested = paper["shock, 213 A"]
+    least, *others = [replace(each, judged=replace(each.margin, margin=1000.0)) for each in tested.models]
+    assert rows(replace(tested, models=[least, *others]))[0][3] == "> 1000"
+    assert rows(replace(tested, models=[replace(least, judged=tested.margin), *others]))[0][3].endswith(" to > 1000")
+
+
+def test_what_hardly_moves_a_margin_is_not_said_to_be_missing() -> None:
+    chance = Chance(0.0, 0.0, 1e-4, {"second.gap": 1e-9}, {"second.gap": 0.0}, 0, 0.0)
+    assert contributions(chance) == "nothing: what the relay's file names hardly moves it"
+    assert contributions(replace(chance, effects={})) == "nothing: the relay's file names no uncertainty"
+
+
 def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
     sine = paper["vibration (sine)"].margin
     sweep, *courses, wear = plots.position_figures(list(paper), MILITARY.contacts)
@@ -312,6 +326,19 @@ def test_figures_have_the_units_of_their_axes(paper: Assessment) -> None:
     first = replace(paper["vibration (sine)"].first, judged=replace(sine, margin=0.005, low=0.004))
     far = plots.margins([replace(paper["vibration (sine)"], models=[first])]).axes[0]
     assert [label.get_text() for label in far.get_xticklabels()][:3] == ["0.005", "0.01", "0.02"]
+
+
+def test_names_in_figures_are_no_formulas(tmp_path: Path) -> None:
+    """Also those of ticks; the marks of a logarithmic axis stay powers of ten."""
+    name = r"5 $ or \frac{$"
+    found = judged(described({}), tmp_path, *(Shock(each, "", "measured", 30.0, 11e-3) for each in (name, "b")))
+    margins, course, *_ = plots.margins(found), *plots.position_figures(found, MILITARY.contacts)
+    course.axes[0].set(xscale="log", title=name)
+    drawn = (margins, course, course)
+    ticks, texts, again = (re.findall("<!-- (.*) -->", pages.svg(figure)) for figure in drawn)
+    assert again == texts
+    assert f"{name}: pass" in ticks
+    assert {name, r"$\mathdefault{10^{1}}$"} < set(texts)
 
 
 def test_no_legend_of_a_figure_is_cut_off(paper: Assessment) -> None:
@@ -573,6 +600,8 @@ def test_a_contact_is_interrupted_by_its_own_law_of_the_resistance(tmp_path: Pat
         contacts = replace(MILITARY.contacts, voltage=threshold, current=1.0)
         (tested,) = judged(relay, tmp_path, Shock("a", "", "measured", 30.0, 11e-3), contacts=contacts)
         assert tested.margin.linear == pytest.approx(tested.margin.margin, rel=1e-3)
+        # What is told of it at rest is all of its force, not what may be lost.
+        assert tested.margin.rest == {"closed contact": resting(relay.positions["own"], "contact.force")[0]}
     # A fifth of it is a fifth of what the force may lose.
     assert tested.margin.low < 0.8 * tested.margin.margin
     assert tested.margin.high > 1.1 * tested.margin.margin

@@ -49,7 +49,9 @@ def test_text_without_time_has_a_rate(tmp_path: Path) -> None:
         read(path)
     (record,) = read(path, rate=50e3)
     assert record.time == pytest.approx(TIME - 12.5, abs=1e-12)
-    path.write_text("time [s],acceleration\n" + "\n".join(f"{t},{a}" for t, a in zip(TIME, VALUES, strict=True)))
+    rows = "\n".join(f"{t},{a}" for t, a in zip(TIME, VALUES, strict=True))
+    # The first line is the time of day.
+    path.write_text(f"Time,12:30:00\ntime [s],acceleration\n{rows}")
     with pytest.raises(
         RelayContactError, match=r"no channel with an acceleration in g or m/s2; there are acceleration \(no"
     ):
@@ -143,6 +145,11 @@ def test_files_of_measuring_programs(tmp_path: Path) -> None:
     names = {"names": ["x", "y"], "units": np.array(["g", "m/s2"], dtype=object)}
     savemat(tmp_path / "matrix.mat", {"t": TIME, "Z": VALUES, "axes": np.ones((400, 3)), **names})
     assert read(tmp_path / "matrix.mat", unit="g")[0].others == ("axes (a matrix)",)
+    with nptdms.TdmsWriter(tmp_path / "begin.tdms") as writer:
+        # Without the time of its first value.
+        given = {"unit_string": "g", "wf_increment": 2e-5}
+        writer.write_segment([nptdms.ChannelObject("group", "Z", VALUES, properties=given)])
+    assert read(tmp_path / "begin.tdms")[0].time == pytest.approx(TIME - 12.5, abs=1e-9)
     # As a copy that has ended too early.
     (tmp_path / "part.mat").write_bytes((tmp_path / "road.mat").read_bytes()[:50])
     with pytest.raises(RelayContactError, match=r"part.mat: cannot be read: "):

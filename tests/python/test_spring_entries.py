@@ -39,6 +39,18 @@ def test_stiffness_is_that_of_the_whole_spring(file: str) -> None:
         assert "youngsModulus" not in "".join(contact.warnings)
 
 
+def test_stiffness_is_that_of_both_twin_contacts(tmp_path: Path) -> None:
+    """Also of a parallel contact with a compliance of its own."""
+    file = tmp_path / "modes.toml"
+    mode = "[[mode]]\nfrequency = 300.0\ncontact = 130.0\nparticipation = 0.01\nparallel = 130.0\n"
+    file.write_text(f"compliance = 5e-3\nparallel_compliance = 5.2e-3\n{mode}")
+    # The first contact stays open.
+    values: Values = {"beam.file": str(file), "effects.parallelContact": True, "contact.overtravel": -1e-3,
+                      "parallel.offset": -2e-3, "parallel.curvatureRadius": 1.0}  # fmt: skip
+    soft, own, stiff = (resting({**values, "spring.stiffness": k}, "parallel.force")[0] for k in (0.9, 1.0, 1.2))
+    assert (soft, stiff) == pytest.approx((0.9 * own, 1.2 * own), rel=1e-4)
+
+
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [
@@ -74,6 +86,15 @@ def test_uncertain_entries_make_margins_uncertain(tmp_path: Path) -> None:
     assert 2 * 0.02 < effects["spring.thickness"] < 3 * 0.02
     # 10 us, the indentation, and the vibration of the spring itself, 5 Hz over 1600 Hz.
     assert effects["spring.stiffness"] == pytest.approx(0.05, rel=5e-3)
+
+
+def test_a_draw_that_is_refused_is_told_to_be_one() -> None:
+    """Beyond the ends of its interval, at which a file is read."""
+    values: Values = {"beam.file": str(MODES), "contact.overtravel": 8e-4}
+    test = Shock("slow", "", "from memory", 20.0, 0.1)
+    position = placed(described(values, {"spring.compliance": Distribution(part=0.5)}), test)
+    with pytest.raises(RelayContactError, match=r"a draw of the uncertain parameters, spring.compliance = 0.5: "):
+        position.margins(test, 1.0)
 
 
 def test_unknown_entries_are_explained(tmp_path: Path) -> None:

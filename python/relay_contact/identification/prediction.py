@@ -6,6 +6,7 @@ by the largest gap that the component allows.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from scipy.linalg import hankel
@@ -13,7 +14,7 @@ from scipy.linalg import hankel
 from relay_contact.component import Array, Component, Contact, Values, half_sine
 from relay_contact.files import RelayContactError
 from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FREQUENCY, RESPONSE, RINGDOWN, Measurement
-from relay_contact.qualification.level import threshold
+from relay_contact.qualification.level import Lengths, threshold
 from relay_contact.qualification.response import EXACT, FREE, interrupting_force, kept, respond
 from relay_contact.qualification.standards import Contacts
 from relay_contact.qualification.trials import Specimen, vibrated
@@ -88,9 +89,11 @@ class Laboratory:
             own = {**own, "solver.modes": MODES}
         found = {**values, **ALONE, **own, **measurement.settings}
         overtravel = self.overtravel(found)
-        if overtravel <= 0 and kind == FREQUENCY:
-            text = f"in the position {measurement.position} a pusher closes the contact: not allowed, allowed is one"
-            raise RelayContactError(f"{measurement.path}: {kind}: {text} that the overtravel closes")
+        touches = kind == BOUNCE and self.rest("preload.force", {**found, **TOUCHING}) > 0
+        if touches or (overtravel <= 0 and kind == FREQUENCY):
+            text = f"in the position {measurement.position} a pusher or gravity closes the contact"
+            allowed = "allowed is one that the overtravel closes"
+            raise RelayContactError(f"{measurement.path}: {kind}: {text}: not allowed, {allowed}")
         closed = kind in (RINGDOWN, RESPONSE, CHATTER) and not measurement.is_open
         if closed and overtravel <= 0 and self.rest("preload.force", found) <= 0:
             what = f"{measurement.kind}: in the position {measurement.position} the contact is open"
@@ -234,8 +237,13 @@ class Laboratory:
         alone = {**asked, "effects.chatter": True, "effects.extremes": True}
         response = respond(self.component, asked, monitor.threshold)
         specimen = Specimen(self.component, alone, monitor, response)
+
+        def tried(at: float, guess: float, part: float) -> tuple[Lengths, float]:
+            lengths, _, ahead = vibrated(specimen, at, part * guess)
+            return specimen.own(lengths), ahead
+
         # Factors: beyond a large one, in place of a level in m/s2, no failure is sought.
         return np.array([
-            threshold(lambda part, at=at, guess=guess: vibrated(specimen, at, part * guess)[::2], 1.0)[0]  # type: ignore[misc]
+            threshold(partial(tried, at, guess), 1.0)[0]
             for at, guess in zip(measurement.over.tolist(), linear.tolist(), strict=True)
         ])  # fmt: skip

@@ -15,7 +15,7 @@ from relay_contact.identification.measurement import BOUNCE, CHATTER, FORCE, FRE
 from relay_contact.identification.prediction import Laboratory
 from relay_contact.qualification.relay import Relay
 from relay_contact.schema import leaves
-from relay_contact.spring import PREFIX, STIFFNESS, known
+from relay_contact.spring import FIXED, PREFIX, STIFFNESS, known
 
 REACH = float(np.log(300.0))
 """Of the search, either way."""
@@ -111,6 +111,10 @@ def unknowns(
     tables = read_toml(path).get("position", [{}])
     used = [name for name in relay.positions if any(each.position == name for each in measurements)]
     found = []
+    for name in names:
+        if name.startswith(FIXED):
+            text = "not allowed, allowed are entries of the spring of the moving contact"
+            raise RelayContactError(f"{name}: of the spring of the fixed contact: {text}")
     # Each once, in whichever spelling.
     for name in dict.fromkeys(name if name.startswith(PREFIX) else component.settable(name) for name in names):
         if not name.startswith(PREFIX) and component.variables[name].type != "Real":
@@ -281,6 +285,8 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         "file that of this relay, and its model complete?"
         for each in found if abs(np.log(each.value / each.unknown.start)) > FAR
     ]  # fmt: skip
+    if any("Coulomb" in values.values() for values in relay.positions.values()):
+        notes.append("measurements are compared with a contact without the friction of the relay's file")
     for other in fit.rivals() if fit.unknowns else []:
         told = (f"{each.label} = {each.start * np.exp(x):.4g}" for each, x in zip(fit.unknowns, other, strict=False))
         notes.append(f"other values fit nearly as well: {', '.join(told)}; the intervals are those of the best alone")

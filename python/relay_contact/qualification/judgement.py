@@ -119,11 +119,13 @@ Found = tuple[dict[str, Level], Seen]
 
 
 def rested(position: Position) -> dict[str, float]:
-    """Return force (N) and gap (m) at rest, by what may fail."""
+    """Return force (N) and gap (m) at rest, by what may fail: all of it, friction included."""
     specimen = position.specimen
     second = {OPEN: position.value("second.gap")} if position.value("effects.secondContact") else {}
-    held = {each.part: each.specimen.response.reserve for each in position.parts[1:]}
-    return {OPEN if specimen.is_open else CLOSED: specimen.response.reserve} | second | held
+    with position.component.started(position.values) as contact, contact.explained():
+        force, indentation = contact.real("preload.force", "preload.indentation")
+        held = {part.name: part.now(contact) for part in specimen.held}
+    return ({OPEN: -indentation} if specimen.is_open else {CLOSED: force}) | second | held
 
 
 def vibration(position: Position, test: Sine, points: int) -> Found:

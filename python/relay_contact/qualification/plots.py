@@ -144,7 +144,8 @@ def margins(tests: list[Tested]) -> Figure:
         parts |= dict.fromkeys(own.parts)
     axes.set(
         yticks=range(len(judged)),
-        yticklabels=labels,
+        # `verbatim` has those of ticks as they are.
+        yticklabels=[label.replace("$", r"\$") for label in labels],
         xscale="log",
         xlabel="level that fails / level of the test (logarithmic)",
     )

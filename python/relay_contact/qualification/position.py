@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from relay_contact.component import Array, Component, Values
+from relay_contact.files import RelayContactError
 from relay_contact.many import side_by_side
 from relay_contact.qualification import courses, statistics, trials
 from relay_contact.qualification.distributions import LEAST, TWO_SIDED, below, quantile
@@ -209,7 +210,11 @@ class Position:
         draw = tuple(scores)
         if draw not in self.shared.tried:
             values = self.drawn(scores)
-            self.shared.tried[draw] = {**self.values, **values}, self.responses(values)
+            try:
+                self.shared.tried[draw] = {**self.values, **values}, self.responses(values)
+            except RelayContactError as error:
+                told = ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
+                raise RelayContactError(f"a draw of the uncertain parameters, {told}: {error}") from error
         return self.shared.tried[draw]
 
     @property

@@ -35,8 +35,9 @@ OF_THE_POSITION = {
     "pusher.displacement": "where the pusher stays",
 }
 """Inputs that say where the parts are, the same in all tests, in words; needed by what they are not used without."""
-HALF, STEP, FURTHER = 10, 1e-5, 1e-4
-"""Steps of a blow either way, their length (s), and how far (m) a mass without a spring moves beyond the contacts."""
+HALF, STEP, FURTHER, HARD = 10, 1e-5, 1e-4, 4.0
+"""Steps of a blow that closes, half of those that open then, their length (s), how far (m) a mass without a spring
+moves beyond the contacts, and how many times as hard the blow is, for one that a stiff spring holds."""
 
 
 NORMAL = "normal"
@@ -252,6 +253,9 @@ def participations(path: Path, axis: str, own: list[float], positions: dict[str,
         if values.get("fixed.file") or values.get("effects.pusher", "None") != "None":
             text = "further axes are those of the moving contact's spring alone, without other parts"
             raise schema.refused(path, ("axes", axis), own, text)
+        if values.get("environment.gravity"):
+            text = "environment.gravity would act along this axis, not along the normal"
+            raise schema.refused(path, ("axes", axis), own, text)
         file = str(values.get("beam.file", ""))
         modes = read_toml(Path(file)).get("mode", []) if file else []
         if axis == NORMAL or len(modes) != len(own):
@@ -312,10 +316,10 @@ def blow(component: Component, values: Values, changed: Values | None = None) ->
     watched = ("contact.force", "contact.resistance", "tip.displacement", "second.force", "second.resistance",
                "fixed.displacement", "pusher.force", "armature.displacement")  # fmt: skip
     travel = FURTHER + sum(abs(component.value(values, name)) for name in ("contact.overtravel", "second.gap"))
-    size = 2 * travel / (HALF * STEP) ** 2
-    # The middle twice: there it turns around.
-    time = STEP * np.insert(np.arange(2.0 * HALF + 1), HALF, HALF)
-    course = np.repeat([size, -size], HALF + 1)
+    size = HARD * 2 * travel / (HALF * STEP) ** 2
+    # Twice where it turns around.
+    time = STEP * np.insert(np.arange(3.0 * HALF + 1), HALF, HALF)
+    course = np.repeat([size, -size], [HALF + 1, 2 * HALF + 1])
     with component.started({**values, **(changed or {})}) as contact, contact.explained():
         # These forces are only compared: a warning of their error would be taken as one of the relay's tests.
         contact.told = sys.maxsize

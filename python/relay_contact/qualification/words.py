@@ -69,11 +69,15 @@ def left_of(margin: Margin, name: str) -> str:
     return f"{QUANTITIES[name]} {three(100 * max(margin.least[name], 0.0) / margin.rest[name])} %"
 
 
+def factor_text(margin: float) -> str:
+    """Return a margin in words."""
+    return f"> {MOST:g}" if margin >= MOST else three(margin)
+
+
 def numbers(own: Margin | PartMargin, stated: bool) -> tuple[str, str]:
     """Return a margin and its interval if there is one, in words: not of what does not fail."""
-    endless = own.margin >= MOST
     interval = f"{three(own.low)} to {three(own.high)}" if stated else UNSTATED
-    return f"> {MOST:g}" if endless else three(own.margin), "" if endless and own.low > 1 else interval
+    return factor_text(own.margin), "" if own.margin >= MOST and own.low > 1 else interval
 
 
 def own_cells(finding: Finding) -> list[str]:
@@ -110,7 +114,8 @@ def rows(tested: Tested) -> list[list[str]]:
     if len(tested.models) == 1:
         return [[first.named, first.level, *own_cells(first)], *part_rows(first)]
     known = [each.judged.margin for each in tested.models if each.judged]
-    spread = f"{three(min(known))} to {three(max(known))}" if known else ""
+    ends = [factor_text(each) for each in (min(known), max(known))] if known else []
+    spread = ends[0] if known and min(known) >= MOST else " to ".join(ends)
     whole = [first.named, first.level, tested.verdict, spread, "by model", *[""] * 4]
     found = [whole]
     for each in tested.models:
@@ -122,7 +127,8 @@ def contributions(chance: Chance) -> str:
     """Return what contributes most to an interval, in words."""
     found = sorted(chance.effects.items(), key=lambda item: -item[1])[:3]
     told = [f"{TOLD.get(name, name)} ± {three(100 * effect)} %" for name, effect in found if effect > 1e-4]
-    return ", ".join(told) or "nothing: the relay's file names no uncertainty"
+    nothing = "what the relay's file names hardly moves it" if found else "the relay's file names no uncertainty"
+    return ", ".join(told) or f"nothing: {nothing}"
 
 
 def tighten(chance: Chance) -> str:
