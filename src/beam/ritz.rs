@@ -24,9 +24,7 @@ use crate::beam::galerkin::{Places, Space};
 use crate::beam::mesh::{Bend, Mesh, Moments, dot};
 use crate::beam::pieces::Pieces;
 use crate::beam::section::Section;
-
-/// Shapes that represent statics under any axial force below buckling to rounding.
-const STATIC_SHAPES: usize = 20;
+use crate::beam::statics::TERMS;
 
 /// The uniform spring of the same mass that deflects and turns as much at its end under a force there.
 pub fn equivalent(spring: &Pieces) -> Section {
@@ -44,14 +42,14 @@ pub fn equivalent(spring: &Pieces) -> Section {
 
 /// A space for statics, in units of the equivalent section.
 pub fn static_space(spring: &Pieces, section: &Section) -> Space {
-    let mesh = Mesh::new(spring, STATIC_SHAPES);
+    let mesh = Mesh::new(spring, TERMS);
     space(&mesh, &static_shapes(&mesh), section)
 }
 
 /// A space of `count` functions for motion under an axial compression (N), where `rubs` also under a moment at the contact,
 /// in units of the equivalent section. `None` if it buckles.
 pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64, rubs: bool) -> Option<Space> {
-    let mesh = Mesh::new(spring, count.max(STATIC_SHAPES));
+    let mesh = Mesh::new(spring, count.max(TERMS));
     let (contact, end) = (spring.before_contact, spring.parts.len());
     let pushed = pushed_under(&mesh, section, axial_force)?;
     let compression = if axial_force == 0.0 { None } else { Some(mesh.compression(axial_force)?) };
@@ -79,7 +77,7 @@ fn static_shapes(mesh: &Mesh) -> Vec<Bend> {
     let [moved, _] = mesh.shaken();
     let pusher = mesh.spring.before_pusher.map(|pusher| mesh.pushed(pusher));
     let starts = [mesh.pushed(mesh.spring.before_contact), moved].into_iter().chain(pusher);
-    krylov(mesh, None, starts.collect(), |shape| mesh.compressed(shape), STATIC_SHAPES)
+    krylov(mesh, None, starts.collect(), |shape| mesh.compressed(shape), TERMS)
 }
 
 /// The moments of unit contact force and an axial compression (N).

@@ -20,7 +20,7 @@ use crate::armature::Armature;
 use crate::beam::mode::{Last, MAX_MODES, Mode, SPRINGS};
 use crate::beam::mode_count::Blow;
 use crate::beam::resolution::Resolution;
-use crate::beam::spring::{Basis, FREQUENCY_MODES, Spring};
+use crate::beam::spring::{Basis, Spring, frequency_modes};
 use crate::beam::statics::AtPlace;
 use crate::beam::tongues;
 use crate::error::Remark;
@@ -169,7 +169,7 @@ impl Springs {
 
     /// Modes for the lowest frequency of all.
     pub fn many_modes(&self, axial_force: f64) -> Option<Vec<Mode>> {
-        let counts = within(self.of_each(FREQUENCY_MODES), self.room());
+        let counts = within(self.of_each(frequency_modes(axial_force)), self.room());
         self.modes(counts, axial_force).map(|basis| basis.modes)
     }
 }

@@ -204,4 +204,33 @@ fn the_uniform_column_of_segments_follows_the_closed_form_under_axial_force() {
         close(share, spring.statics.tip_compliance(force), exact, 1e-9);
     }
     assert!(spring.frequency(1.001 * buckling_load, 0.0).is_none());
+    for share in [-3.0, -1e3, -1e4] {
+        let tension = -share * buckling_load;
+        let l = (tension / plain.bending_stiffness).sqrt();
+        let exact = (plain.length - (l * plain.length).tanh() / l) / tension;
+        for statics in [Statics::new(&plain), spring.statics.clone()] {
+            close(share, statics.tip_compliance(-tension), exact, 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_spring_that_goes_on_beyond_its_contact_has_its_frequency_under_tension() {
+    // Zeros of the determinant of both stretches in closed form, with 80 digits: buckling loads, and rad/s on a support of 1e6 N/m.
+    let mut scene = Scene::default();
+    scene.tip.mass = 2e-5;
+    let segments =
+        Segments { segments: vec![uniform(0.018, 4e-3, 1e-4)], contact_position: Some(0.015), ..Segments::default() };
+    let spring = Spring::new(&with(scene, Shape::Segments(segments)));
+    let buckling_load = 0.453_270_720_642_622;
+    close("buckling load, N", spring.statics.buckling_load(), buckling_load, 1e-10);
+    let cases = [
+        (-3.0, 8_505.834_853_845_14),
+        (-300.0, 32_467.861_801_025),
+        (-1000.0, 36_608.690_949_775_7),
+        (-3000.0, 39_047.825_950_428_7),
+    ];
+    for (share, exact) in cases {
+        close(share, spring.frequency(share * buckling_load, 1e6).unwrap(), exact, 5e-4);
+    }
 }
