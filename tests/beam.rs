@@ -49,7 +49,7 @@ fn exact_frequencies_agree_with_galerkin() {
 
 #[test]
 fn static_compliance_follows_the_beam_column() {
-    let statics = Statics::new(&UNIT);
+    let statics = Statics::new(&UNIT, 0.0);
     // Tip load: (tan(l) / l - 1) / N with l^2 = N / (E I); tension takes tanh.
     for n in [0.5, 1.0, 2.0, 2.4, 2.46] {
         let l = f64::sqrt(n);

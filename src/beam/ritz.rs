@@ -24,7 +24,7 @@ use crate::beam::galerkin::{Places, Space};
 use crate::beam::mesh::{Bend, Mesh, Moments, dot};
 use crate::beam::pieces::Pieces;
 use crate::beam::section::Section;
-use crate::beam::statics::TERMS;
+use crate::beam::statics;
 
 /// The uniform spring of the same mass that deflects and turns as much at its end under a force there.
 pub fn equivalent(spring: &Pieces) -> Section {
@@ -40,16 +40,16 @@ pub fn equivalent(spring: &Pieces) -> Section {
     }
 }
 
-/// A space for statics, in units of the equivalent section.
-pub fn static_space(spring: &Pieces, section: &Section) -> Space {
-    let mesh = Mesh::new(spring, TERMS);
-    space(&mesh, &static_shapes(&mesh), section)
+/// A space of `count` functions for statics, in units of the equivalent section.
+pub fn static_space(spring: &Pieces, section: &Section, count: usize) -> Space {
+    let mesh = Mesh::new(spring, count);
+    space(&mesh, &static_shapes(&mesh, count), section)
 }
 
 /// A space of `count` functions for motion under an axial compression (N), where `rubs` also under a moment at the contact,
 /// in units of the equivalent section. `None` if it buckles.
 pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_force: f64, rubs: bool) -> Option<Space> {
-    let mesh = Mesh::new(spring, count.max(TERMS));
+    let mesh = Mesh::new(spring, count.max(statics::size(section, axial_force)));
     let (contact, end) = (spring.before_contact, spring.parts.len());
     let pushed = pushed_under(&mesh, section, axial_force)?;
     let compression = if axial_force == 0.0 { None } else { Some(mesh.compression(axial_force)?) };
@@ -73,11 +73,11 @@ pub fn dynamic_space(spring: &Pieces, section: &Section, count: usize, axial_for
     Some(space(&mesh, &shapes, section))
 }
 
-fn static_shapes(mesh: &Mesh) -> Vec<Bend> {
+fn static_shapes(mesh: &Mesh, count: usize) -> Vec<Bend> {
     let [moved, _] = mesh.shaken();
     let pusher = mesh.spring.before_pusher.map(|pusher| mesh.pushed(pusher));
     let starts = [mesh.pushed(mesh.spring.before_contact), moved].into_iter().chain(pusher);
-    krylov(mesh, None, starts.collect(), |shape| mesh.compressed(shape), TERMS)
+    krylov(mesh, None, starts.collect(), |shape| mesh.compressed(shape), count)
 }
 
 /// The moments of unit contact force and an axial compression (N).
@@ -85,7 +85,7 @@ fn pushed_under(mesh: &Mesh, section: &Section, axial_force: f64) -> Option<Mome
     if axial_force == 0.0 {
         return Some(mesh.pushed(mesh.spring.before_contact));
     }
-    let shapes = static_shapes(mesh);
+    let shapes = static_shapes(mesh, statics::size(section, axial_force));
     let space = space(mesh, &shapes, section);
     let deflections = space.deflections(section, axial_force)?;
     Some(mesh.sum(deflections.iter().copied().zip(&shapes)))

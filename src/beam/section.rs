@@ -2,6 +2,9 @@
 
 use crate::scene::Scene;
 
+/// See [`Section::is_taut`], in E I / L^2: a hundred times the quarter of the square of pi.
+const TAUT: f64 = 247.0;
+
 /// Stiffness and mass of the spring, and the rivet at its tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
@@ -38,6 +41,12 @@ impl Section {
     /// Rate of its bending waves, the root of E I / (rho A L^4), 1/s: 3.516 of it is the first angular frequency without rivet.
     pub fn rate(&self) -> f64 {
         (self.bending_stiffness / self.mass_per_length).sqrt() / (self.length * self.length)
+    }
+
+    /// Whether an axial compression (N) is a tension of more than a hundred buckling loads: it bends shapes so sharply at clamp and contact
+    /// that it takes more functions to represent them.
+    pub(super) fn is_taut(&self, axial_force: f64) -> bool {
+        axial_force < -TAUT * self.bending_stiffness / self.length.powi(2)
     }
 
     /// Tip stiffness 3 E I / L^3 without axial force, N/m.

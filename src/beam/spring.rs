@@ -12,7 +12,7 @@ use crate::beam::mode_count::{Blow, MOST};
 use crate::beam::pieces::Pieces;
 use crate::beam::ritz;
 use crate::beam::section::Section;
-use crate::beam::statics::{Statics, axial_force_from_deflection};
+use crate::beam::statics::{self, Statics, axial_force_from_deflection};
 use crate::math::simd::LANES;
 use crate::scene::spring::{Segment, Segments, Shape};
 use crate::scene::{Beam, Scene};
@@ -56,10 +56,10 @@ pub struct Basis {
 const IRREGULAR: usize = 5;
 
 /// Modes for the lowest frequency of springs: what the others add to the flexibility there, beyond their static share, is less than
-/// rounding of the compliance. Under tension twice as many show how the slope turns at a contact before the end, to 4e-4 of the
+/// rounding of the compliance. Under a large tension twice as many show how the slope turns at a contact before the end, to 4e-4 of the
 /// frequency at thousands of buckling loads.
-pub fn frequency_modes(axial_force: f64) -> usize {
-    if axial_force < 0.0 { 64 } else { 32 }
+pub(super) fn frequency_modes(section: &Section, axial_force: f64) -> usize {
+    if section.is_taut(axial_force) { 64 } else { 32 }
 }
 
 impl Spring {
@@ -67,7 +67,7 @@ impl Spring {
     pub fn new(scene: &Scene) -> Self {
         let (statics, form) = match scene.spring.as_ref().map(|file| &file.shape) {
             None if scene.pushed_at().is_some() => of_segments(&uniform(&scene.beam), scene),
-            None => (Statics::new(&Section::new(scene)), Form::Uniform),
+            None => (Statics::new(&Section::new(scene), prescribed(scene)), Form::Uniform),
             Some(Shape::Segments(segments)) => of_segments(segments, scene),
             Some(Shape::Modes(modes)) => {
                 let given = Given::new(modes);
@@ -160,7 +160,7 @@ impl Spring {
             if let Form::Uniform = form {
                 return characteristic::frequencies(section, *axial_force, *stiffness, 1).first().copied();
             }
-            let (modes, _) = undamped(form, section, (frequency_modes(*axial_force), *axial_force, false))?;
+            let (modes, _) = undamped(form, section, (frequency_modes(section, *axial_force), *axial_force, false))?;
             let modes: Vec<_> = modes.into_iter().map(|(mode, _)| mode).collect();
             let tip = array::from_fn(|i| modes.get(i).map_or(0.0, |mode| mode.tip));
             lowest_frequency(&modes, iter::once((*stiffness, tip)))
@@ -183,8 +183,8 @@ impl Form {
 /// What was found of springs, for all simulations of a process.
 #[derive(Debug, Default)]
 pub struct Known {
-    /// Statics, with the equivalent section.
-    statics: Found<Pieces, Statics>,
+    /// Statics by so many functions, with the equivalent section.
+    statics: Found<(Pieces, usize), Statics>,
     /// Modes without damping.
     modes: Found<(Form, Section, Asked), Option<Undamped>>,
     /// Lowest angular frequency (rad/s) under an axial compression (N) on an elastic support (N/m).
@@ -208,13 +208,23 @@ fn undamped(form: &Form, section: &Section, asked: Asked) -> Option<Undamped> {
     })
 }
 
+/// The axial compression, if it is prescribed, N.
+fn prescribed(scene: &Scene) -> f64 {
+    if scene.effects.axial_force == AxialForceKind::Prescribed { scene.beam.axial_force } else { 0.0 }
+}
+
 /// The statics of a spring of segments, and what it is made of.
 fn of_segments(segments: &Segments, scene: &Scene) -> (Statics, Form) {
     let pieces = Pieces::new(segments, scene);
-    let statics = Shared::of(&KNOWN).statics.of(pieces.clone(), |pieces| {
-        let section = ritz::equivalent(pieces);
-        Statics::of(&section, ritz::static_space(pieces, &section))
-    });
+    let by = |count: usize| {
+        Shared::of(&KNOWN).statics.of((pieces.clone(), count), |(pieces, count)| {
+            let section = ritz::equivalent(pieces);
+            Statics::of(&section, ritz::static_space(pieces, &section, *count))
+        })
+    };
+    let few = by(statics::FEW);
+    let count = statics::size(&few.section, prescribed(scene));
+    let statics = if count > statics::FEW { by(count) } else { few };
     (statics, Form::Segments(pieces))
 }
 

@@ -169,7 +169,7 @@ impl Springs {
 
     /// Modes for the lowest frequency of all.
     pub fn many_modes(&self, axial_force: f64) -> Option<Vec<Mode>> {
-        let counts = within(self.of_each(frequency_modes(axial_force)), self.room());
+        let counts = within(self.of_each(frequency_modes(&self.moving.statics.section, axial_force)), self.room());
         self.modes(counts, axial_force).map(|basis| basis.modes)
     }
 }

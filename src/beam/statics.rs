@@ -7,9 +7,17 @@ use nalgebra::DVectorView;
 use crate::beam::galerkin::Space;
 use crate::beam::section::Section;
 
-/// Size of the polynomial space: the static shapes under an axial force are entire functions. 20 polynomials represent them to rounding
-/// below buckling and up to a tension of some hundred buckling loads, these to ten thousand, and to 2e-10 at a hundred thousand.
-pub const TERMS: usize = 64;
+/// Size of the space: the static shapes under an axial force are entire functions, which 20 polynomials represent to rounding up to a
+/// tension of a hundred buckling loads.
+pub(super) const FEW: usize = 20;
+
+/// The same up to ten thousand; at a hundred thousand to 2e-10.
+const MANY: usize = 64;
+
+/// Size of the space for statics under an axial compression (N).
+pub(super) fn size(section: &Section, axial_force: f64) -> usize {
+    if section.is_taut(axial_force) { MANY } else { FEW }
+}
 
 /// Tip deflection per load, as a function of the axial force.
 ///
@@ -64,15 +72,20 @@ impl Term {
     }
 }
 
+/// Those of a uniform spring.
+fn uniform<const N: usize>() -> [Term; N] {
+    let mut terms = Term::of(Space::new(N)).into_iter();
+    std::array::from_fn(|_| terms.next().unwrap_or_default())
+}
+
 impl Statics {
-    /// For the section.
-    pub fn new(section: &Section) -> Self {
+    /// For the section, under axial compressions like one that is prescribed (N), if any.
+    pub fn new(section: &Section, prescribed: f64) -> Self {
         // The same numbers for every section: found once in a process, and nothing that would have to be freed.
-        static OF_ALL: LazyLock<[Term; TERMS]> = LazyLock::new(|| {
-            let mut terms = Term::of(Space::new(TERMS)).into_iter();
-            std::array::from_fn(|_| terms.next().unwrap_or_default())
-        });
-        Self { section: *section, terms: OF_ALL.to_vec() }
+        static OF_FEW: LazyLock<[Term; FEW]> = LazyLock::new(uniform);
+        static OF_MANY: LazyLock<[Term; MANY]> = LazyLock::new(uniform);
+        let terms = if section.is_taut(prescribed) { OF_MANY.to_vec() } else { OF_FEW.to_vec() };
+        Self { section: *section, terms }
     }
 
     /// For a space in units of the section.
