@@ -267,7 +267,7 @@ corePosition = 1e-4
         ("position = [{parameters.contact.overtravel = 3e-4}, {name = 'B'}]\n" + SAMPLE,
          "4: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, B has 0.0002"),
         ("model = [{}, {parameters.contact.overtravel = 2e-4}]\nparameters.contact.overtravel = 3e-4\n" + SAMPLE,
-         "2: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, model 2 has 0.0002"),
+         "5: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: .*, position 1 by model 2 has 0.0002"),
         ("uncertainty.tip.mass = 0.1\n[correlation]\nnames = ['tip.mas']\nmatrix = [[1.0]]", "4: correlation.names.1"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]", "4: correlation.matrix.1.2 = 2.0"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]", "2: correlation = .*symmetrical"),
@@ -294,6 +294,13 @@ def test_what_is_uncertain_of_a_second_contact_is_used(tmp_path: Path) -> None:
     for spring in ("", "parameters.second.gap = 1e-3\nparameters.beam.length = 7e-3\n"):
         path.write_text(f"parameters.effects.secondContact = true\n{spring}{uncertain}")
         assert list(Relay.read(path, COMPONENT).uncertainty) == names
+
+
+def test_what_is_uncertain_of_one_model_alone_is_used(tmp_path: Path) -> None:
+    path = tmp_path / "relay.toml"
+    rough = "{parameters.effects.contactLaw = 'Rough', parameters.contact.stiffness = 3.8e4}"
+    path.write_text(f"uncertainty.contact.stiffness = 0.1\nmodel = [{{}}, {rough}]\n")
+    assert list(Relay.read(path, COMPONENT).uncertainty) == ["contact.stiffness"]
 
 
 def test_a_relay_names_its_spring_where_the_component_carries_another(
