@@ -420,6 +420,18 @@ def test_errors_in_a_scene_have_their_line(tmp_path: Path, text: str, message: s
         run(path, component=COMPONENT)
 
 
+def test_a_link_to_a_scene_has_table_and_spring_beside_the_link(tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "scene").write_text(
+        "stop = 1e-3\ncommunicationStep = 1e-4\noutputs = ['contact.force']\n"
+        "parameters.beam.file = 'spring.toml'\ninputs.file = 'course.csv'\n"
+    )
+    (tmp_path / "scene.toml").symlink_to(tmp_path / "kept" / "scene")
+    (tmp_path / "spring.toml").write_bytes((ROOT / "scenes/springs/tapered-cube.toml").read_bytes())
+    (tmp_path / "course.csv").write_text("time,contact.current\n0,0\n1,1\n")
+    assert Scene.read(tmp_path / "scene.toml", COMPONENT).values["beam.file"] == str(tmp_path / "spring.toml")
+
+
 def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path: Path) -> None:
     path = scene_beside_a_table(tmp_path)
     path.write_text(SCENE + "[inputs]\nfile = 'moved/in.csv'\n")

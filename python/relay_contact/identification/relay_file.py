@@ -99,7 +99,7 @@ def text(result: Identification, spring: str, folder: Path) -> str:
         for name, _, value in list(leaves(each.get("parameters", {}))):
             if name in SPRING_FILES and value:
                 found = spring if name == "beam.file" and any(each is own for own in of_relay) else ""
-                there = os.path.relpath(result.path.resolve().parent / str(value), folder.resolve())
+                there = os.path.relpath((result.path.parent / str(value)).resolve(), folder.resolve())
                 put(each["parameters"], name, tomlkit.item(found or Path(there).as_posix()))
     return tomlkit.dumps(content)
 

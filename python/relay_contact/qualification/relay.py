@@ -237,7 +237,7 @@ def moved(path: Path, content: Content, component: Component) -> dict[str, Value
             f"{path}:{schema.line(path, ('armature',))}: pusher: missing, by which the armature moves it"
         )
     file = {name: value for name, _, value in schema.leaves(content.parameters)}.get("beam.file", "")
-    has_place = bool(file) and by_modes(path.resolve().parent / str(file))
+    has_place = bool(file) and by_modes(path.parent / str(file))
     for name, own in tables.items():
         # With start values that nobody chose a verdict would be that of another relay.
         for entry in NEEDED[name]:
