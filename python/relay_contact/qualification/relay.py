@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -201,8 +202,9 @@ def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> Non
     """
     monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
     text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed, the contact has"
-    for name, values in relay.positions.items():
-        with component.started(values) as contact:
+    for (position, values), model in product(relay.positions.items(), relay.models):
+        name = f"{position} by {model.name}" if len(relay.models) > 1 else position
+        with component.started({**values, **model.parameters}) as contact:
             force, resistance, apart = contact.real("contact.force", "contact.resistance", "resistance.open")
             parallel, offset = contact.real("parallel.force", "parallel.offset")
         if parallel > 0 and force <= 0:
