@@ -619,6 +619,12 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
         # The spring lies beside the file, as it was found.
         assert Path(str(written.positions[position]["beam.file"])).parent.resolve() == out.resolve()
     assert result["spring.stiffness"].value == pytest.approx(1.0, abs=1e-3)
+    assert written.uncertainty["contact.overtravel"] != relay.uncertainty["contact.overtravel"]
+    # What is known of one position is not known of the other.
+    result = found(paths[1], relay=file, parameters=["contact.overtravel"], out=out)
+    assert result.notes[-1].startswith("contact.overtravel: in the position coil without current it is that of the")
+    written = Relay.read(out / "relay.toml", COMPONENT)
+    assert written.uncertainty["contact.overtravel"] == relay.uncertainty["contact.overtravel"]
     paths[0].write_text(paths[0].read_text().split("\n", 1)[1])
     with pytest.raises(RelayContactError, match=r"0.csv:1: which position of the coil"):
         found(*paths, relay=file)
