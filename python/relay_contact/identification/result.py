@@ -311,9 +311,11 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
     for other in fit.rivals() if fit.unknowns else []:
         told = (f"{each.label} = {each.start * np.exp(x):.4g}" for each, x in zip(fit.unknowns, other, strict=False))
         notes.append(f"other values fit nearly as well: {', '.join(told)}; the intervals are those of the best alone")
+    # What was found of a spring is in its file.
+    stated = names | {"beam.file" for name in names if name.startswith(PREFIX)}
     for model in relay.models:
         # What `qualify` takes in place of what was found.
-        if kept := sorted(model.parameters.keys() & names):
+        if kept := sorted(model.parameters.keys() & stated):
             text = f"keeps its own {', '.join(kept)}: it was not fitted to the data; identify it by a file of its own"
             notes.append(f"the model {model.name!r} of the relay's file {text}")
     beside = moved @ root / sizes[:, None]
