@@ -132,6 +132,10 @@ int main(int argc, char **argv) {
             return 1;
         }
     }
+    if (!isfinite(numbers[1]) || numbers[1] <= 0.0) {
+        fprintf(stderr, "%g s: not allowed, allowed is a positive number\n", numbers[1]);
+        return 1;
+    }
     table = fopen(path, "w");
     /* A library of other variables than those of the header refuses its GUID. */
     contact = fmi2Instantiate("contact", fmi2CoSimulation, RELAY_CONTACT_GUID, NULL, &callbacks, fmi2False, fmi2False);

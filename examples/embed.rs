@@ -60,6 +60,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     let parsed = |text: &String| text.parse::<f64>().map_err(|_| format!("{text}: not a number"));
     let number = |at: usize, default| arguments.get(at).map_or(Ok(default), parsed);
     let (amplitude, duration) = (number(0, 400.0)?, number(1, 0.02)?);
+    if !duration.is_finite() || duration <= 0.0 {
+        return Err(format!("{duration} s: not allowed, allowed is a positive number").into());
+    }
     let path = arguments.get(2).map_or("out/embed.csv", String::as_str);
 
     // The start values are those of the published specimen. `Simulation::new` checks all fields.

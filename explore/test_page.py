@@ -124,6 +124,48 @@ def test_what_cannot_be_simulated_is_said_in_the_library_s_words(page: Page) -> 
     assert "stop = -1" in str(page.get_by_role("status").text_content())
 
 
+def test_what_cannot_be_loaded_is_said(page: Page, tmp_path: Path) -> None:
+    """A browser that is too old; what then fails for want of the library is not said in its place."""
+    (tmp_path / "page.html").write_text(PAGE.read_text().replace("DecompressionStream", "TooNewStream"))
+    page.goto((tmp_path / "page.html").as_uri())
+    page.wait_for_function("run !== null && broken !== ''")
+    page.get_by_label("Overtravel, slider").press("End")
+    page.wait_for_timeout(500)
+    assert page.get_by_role("status").text_content() == "TooNewStream is not defined"
+    assert "Ended: TooNewStream is not defined" in str(page.locator("#level-caption").text_content())
+
+
+def test_a_dragged_slider_is_followed_where_the_browser_refuses_quick_changes_of_the_address(page: Page) -> None:
+    opened(page)
+    page.evaluate("void (history.replaceState = () => { throw new Error('too often'); })")
+    page.get_by_label("Overtravel, slider").press("End")
+    page.wait_for_function("!busy && waiting === null")
+    link = page.get_by_label("Link to these values").input_value()
+    shown = page.evaluate("run.preload")
+    opened(page, link.partition("#")[2])
+    assert "contact.overtravel=" in link
+    assert page.evaluate("run.preload") == shown
+
+
+@pytest.mark.parametrize(
+    "hash_",
+    ["excitation.amplitude=1470&beam.length=0.03", "beam.length=0.03&beam.thickness=6e-5&contact.overtravel=2e-5"],
+)
+def test_levels_and_vibration_are_inside_the_axes(page: Page, hash_: str) -> None:
+    """150 g beside levels below 60 g; and levels of 0.01 g."""
+    opened(page, hash_)
+    page.wait_for_function("levels.size === FREQUENCIES.length")
+    ends = page.locator("#level .frame").evaluate(
+        "box => [box.y.baseVal.value, box.y.baseVal.value + box.height.baseVal.value]"
+    )
+    heights = page.evaluate(
+        "[...document.querySelectorAll('#level .curve, #level .here')].flatMap(one => one.tagName === 'circle'"
+        " ? one.cy.baseVal.value : one.getAttribute('d').slice(1).split('L').map(each => Number(each.split(' ')[1])))"
+    )
+    assert len(heights) >= 41
+    assert ends[0] <= min(heights) <= max(heights) <= ends[1]
+
+
 def test_every_control_has_a_label_and_is_reached_by_tab(page: Page) -> None:
     opened(page)
     controls = page.locator("input:visible, select:visible, button:visible, pre")

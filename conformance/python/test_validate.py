@@ -24,6 +24,10 @@ def test_fmpy_finds_no_problem(fmu: Path) -> None:
 def test_the_python_package_refuses_a_component_without_names_of_choices() -> None:
     with pytest.raises(RelayContactError, match=r"RelayContact-plain.fmu: a variant for other tools, "):
         run("at-rest", component=Component(PLAIN), friction_coefficient=0.3)
+    # As those of scenes.
+    for effect in ("Linearised", True):
+        with pytest.raises(RelayContactError, match=r"RelayContact-plain.fmu: a variant for other tools, "):
+            Component(PLAIN).number("effects.contactLaw", effect)
 
 
 def test_package_holds_documentation_licences_and_icon() -> None:

@@ -7,6 +7,7 @@ const ORDER = [8, 4, 2, 1].flatMap((stride, round) => FREQUENCIES.filter((_, n) 
 let values = valuesOf(location.hash);
 let run = null;
 let levels = new Map();
+let broken = ""; // what ended the search for levels
 
 // ---- workers ----
 const packed = Uint8Array.from(atob(element("library").textContent), (letter) => letter.charCodeAt(0));
@@ -20,10 +21,13 @@ function worker(receive) {
   return made;
 }
 
+let loaded = false;
 let busy = true;
 let waiting = null;
 const curves = worker((data) => {
-  busy = false;
+  loaded ||= Boolean(data.ready);
+  // Where the library cannot be loaded nothing is sent to it: the error says why.
+  busy = !loaded;
   if (!data.ready) {
     run = data.error ? { error: data.error } : read(data);
     draw();
@@ -46,11 +50,12 @@ let later = 0;
 function search() {
   searching?.terminate();
   clearTimeout(later);
-  levels = new Map();
+  [levels, broken] = [new Map(), ""];
   later = setTimeout(() => {
     searching = worker((data) => {
       if (data.ready) searching.postMessage({ scene: sceneOf(values), frequencies: ORDER });
-      else if (!data.error) levels.set(data.frequency, data);
+      else if (data.error) broken = ` Ended: ${data.error}`;
+      else levels.set(data.frequency, data);
       drawLevels();
     });
   }, 300);
@@ -118,22 +123,23 @@ function drawLevels() {
   const sine = values["effects.excitation"] === "Sine";
   const now = Math.abs(values["excitation.amplitude"]) / G;
   const shown = found.flatMap(({ level, linear }) => [level, linear]).filter(Number.isFinite).map((value) => value / G);
-  const low = Math.min(10, ...shown, sine ? now || 10 : 10);
-  const high = Math.max(100, ...shown);
+  const here = sine && now >= 0.1 ? [now] : [];
+  const low = Math.min(10, ...shown, ...here);
+  const high = Math.max(100, ...shown, ...here);
   plot(element("level"), {
     x: { low: FREQUENCIES[0], high: FREQUENCIES[FREQUENCIES.length - 1], log: true, label: "frequency, Hz" },
-    y: { low: Math.max(0.8 * low, 0.1), high: Math.min(1.25 * high, 1e5), log: true, label: "acceleration that opens the contact, g" },
+    y: { low: 0.8 * low, high: Math.min(1.25 * high, 1e5), log: true, label: "acceleration that opens the contact, g" },
     curves: [
       { x: found.map((each) => each.frequency), y: found.map((each) => each.linear / G), kind: "mark" },
       { x: opening.map((each) => each.frequency), y: opening.map((each) => each.level / G) },
     ],
-    here: sine ? [values["excitation.frequency"], now] : undefined,
+    here: here.length ? [values["excitation.frequency"], now] : undefined,
   });
   element("progress").value = levels.size / FREQUENCIES.length;
   const least = opening.reduce((a, b) => (a && a.level <= b.level ? a : b), null);
   element("level-caption").textContent = "Steady sine from which on the contact opens; dashed: linear theory"
-    + (sine ? "; dot: this vibration. " : ". ")
-    + (least ? `Least so far: ${digits(least.level / G)} g at ${digits(least.frequency, 4)} Hz.` : "");
+    + (here.length ? "; dot: this vibration. " : ". ")
+    + (least ? `Least so far: ${digits(least.level / G)} g at ${digits(least.frequency, 4)} Hz.` : "") + broken;
 }
 
 // ---- controls ----
@@ -171,6 +177,7 @@ function change(control, value, from) {
   if (control.group !== "Excitation") search();
 }
 
+let named = 0;
 function show(from) {
   for (const [control, row] of rows) {
     row.hidden = !used(control, values);
@@ -188,9 +195,11 @@ function show(from) {
   const scene = sceneOf(values);
   element("scene").textContent = scene;
   const hash = hashOf(values);
-  history.replaceState(null, "", hash ? `#${hash}` : location.pathname + location.search);
-  element("link").value = location.href;
+  element("link").value = location.href.replace(/#.*/, "") + (hash && `#${hash}`);
   send(scene);
+  // Browsers refuse more than about ten a second, as a slider that is dragged would give.
+  clearTimeout(named);
+  named = setTimeout(() => history.replaceState(null, "", element("link").value), 300);
 }
 
 function load(hash) {

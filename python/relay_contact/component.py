@@ -233,6 +233,8 @@ class Component:
                 return float(value)
             if kind != "Real" and abs(value) < 2**31 and value == int(value) and (kind != "Boolean" or value in (0, 1)):
                 return int(value)
+        if isinstance(value, str | bool):
+            self.choices("effects.excitation")
         others = {"Boolean": "true, false", "Real": "a finite number"}
         allowed = ", ".join(choices) or others.get(kind, "a whole number")
         near = nearest(value, choices) if isinstance(value, str) else ""

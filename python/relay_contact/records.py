@@ -164,7 +164,7 @@ def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> 
     """Return a channel, `factor` its unit in SI, with values that are valid and differ, over a time that rises."""
     where, time, clock = f"{path}: channel {channel.name}", channel.time, spelled(channel.clock)
     given = channel.values() if callable(channel.values) else channel.values
-    values = np.asarray(given, dtype=float) * factor
+    values = np.asarray(np.real(given), dtype=float) * factor
     if time is None or len(time) == 0:
         if rate is None:
             raise RelayContactError(
@@ -181,6 +181,7 @@ def checked(path: Path, channel: Channel, factor: float, rate: float | None) -> 
         raise RelayContactError(f"{where}: {told}: not allowed, allowed are as many, {FEWEST} or more")
     for what, bad in (
         ("one that the file does not mark as invalid", np.broadcast_to(channel.invalid, values.shape)),
+        ("a real number", np.imag(given) != 0),
         ("a finite number", ~(np.isfinite(values) & np.isfinite(time))),
         ("more than the time before", np.concatenate([[False], np.diff(time) <= 0])),
     ):

@@ -170,7 +170,7 @@ def variables(
             if name in values:
                 raise refused(path, (*place, *keys), value, "given twice")
             if name in SPRING_FILES and isinstance(value, str) and value:
-                value = str(path.resolve().parent / value)
+                value = str(path.absolute().parent / value)
             if contact:
                 with at(path, *place, *keys), contact.explained():
                     contact.set(exact(contact.component, name, "" if name in inputs else kind), value)

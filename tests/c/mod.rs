@@ -105,10 +105,17 @@ fn a_small_vibration_gives_the_linear_response() {
 
 #[test]
 fn a_refused_value_ends_an_example_with_its_name_and_range() {
-    for (acceleration, told) in [("nan", "base.acceleration = NaN m/s2: not allowed"), ("40o", "40o: not a number")] {
+    for (acceleration, duration, told) in [
+        ("nan", "0.01", "base.acceleration = NaN m/s2: not allowed"),
+        ("40o", "0.01", "40o: not a number"),
+        // Not a run without interruptions.
+        ("400", "nan", " s: not allowed, allowed is a positive number"),
+        ("400", "-0.01", "-0.01 s: not allowed, allowed is a positive number"),
+        ("400", "inf", "inf s: not allowed, allowed is a positive number"),
+    ] {
         for mut program in [in_rust(), in_c()] {
             let table = Path::new(env!("CARGO_TARGET_TMPDIR")).join("refused.csv");
-            let ran = program.args([acceleration, "0.01"]).arg(table).output().unwrap();
+            let ran = program.args([acceleration, duration]).arg(table).output().unwrap();
             let said = String::from_utf8_lossy(&ran.stderr);
             assert!(!ran.status.success() && said.contains(told), "{said}");
         }

@@ -480,6 +480,13 @@ def test_another_axis_by_its_participations(tmp_path: Path) -> None:
     relay.write_text(f"{text.replace(str(spring), str(still))}axes.lateral = {parts}\n")
     with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral.2 = .*mode 2 has none in the spring file"):
         Relay.read(relay, COMPONENT)
+    relay.write_text(f"{text}axes.lateral = {parts}\nmodel = [{{}}, {{parameters.environment.gravity = 9.8}}]\n")
+    with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral = .*gravity would act along this axis"):
+        Relay.read(relay, COMPONENT)
+    still.write_text(Path(str(spring)).read_text().replace(f"participation = {parts[1]}", "participation = 0.01"))
+    relay.write_text(f"{text}axes.lateral = {parts}\nmodel = [{{}}, {{parameters.beam.file = '{still}'}}]\n")
+    with pytest.raises(RelayContactError, match=r"relay.toml:6: axes.lateral.2 = .*mode 2 has another participation"):
+        Relay.read(relay, COMPONENT)
 
 
 def test_a_number_that_no_verdict_depends_on_is_no_evidence() -> None:

@@ -267,7 +267,7 @@ corePosition = 1e-4
         ("position = [{parameters.contact.overtravel = 3e-4}, {name = 'B'}]\n" + SAMPLE,
          "4: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, B has 0.0002"),
         ("model = [{}, {parameters.contact.overtravel = 2e-4}]\nparameters.contact.overtravel = 3e-4\n" + SAMPLE,
-         "2: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: not allowed, model 2 has 0.0002"),
+         "5: uncertainty.contact.overtravel: values of 0.00029 to 0.00031: .*, position 1 by model 2 has 0.0002"),
         ("uncertainty.tip.mass = 0.1\n[correlation]\nnames = ['tip.mas']\nmatrix = [[1.0]]", "4: correlation.names.1"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 2.0], [2.0, 1.0]]", "4: correlation.matrix.1.2 = 2.0"),
         ("[correlation]\nnames = ['a', 'b']\nmatrix = [[1.0, 0.5], [0.4, 1.0]]", "2: correlation = .*symmetrical"),
@@ -294,6 +294,13 @@ def test_what_is_uncertain_of_a_second_contact_is_used(tmp_path: Path) -> None:
     for spring in ("", "parameters.second.gap = 1e-3\nparameters.beam.length = 7e-3\n"):
         path.write_text(f"parameters.effects.secondContact = true\n{spring}{uncertain}")
         assert list(Relay.read(path, COMPONENT).uncertainty) == names
+
+
+def test_what_is_uncertain_of_one_model_alone_is_used(tmp_path: Path) -> None:
+    path = tmp_path / "relay.toml"
+    rough = "{parameters.effects.contactLaw = 'Rough', parameters.contact.stiffness = 3.8e4}"
+    path.write_text(f"uncertainty.contact.stiffness = 0.1\nmodel = [{{}}, {rough}]\n")
+    assert list(Relay.read(path, COMPONENT).uncertainty) == ["contact.stiffness"]
 
 
 def test_a_relay_names_its_spring_where_the_component_carries_another(
@@ -347,13 +354,16 @@ def test_errors_in_a_standard_have_their_line(tmp_path: Path, old: str, new: str
          r"a monitor of .* from 1e\+09 Ohm on: not allowed, the contact has 1e\+09 Ohm while it is open"),
         ("[parameters]\neffects.parallelContact = true\nparallel.offset = -1e-3\n",
          r"parallel.offset = -0.001 m: .* exchange both"),
+        # By one of its models alone.
+        ("model = [{}, {parameters.resistance.open = 50.0}]\n",
+         r"a monitor of .* from 600 Ohm on: not allowed, the contact has 50 Ohm while it is open"),
     ],
 )  # fmt: skip
 def test_a_relay_whose_contact_is_not_seen_to_open_is_refused(tmp_path: Path, text: str, message: str) -> None:
     """By its monitor, or as the first of twin contacts bears no force."""
     relay = tmp_path / "relay.toml"
     relay.write_text(text)
-    with pytest.raises(RelayContactError, match=f"position 1: {message}"):
+    with pytest.raises(RelayContactError, match=f"position 1( by model 2)?: {message}"):
         qualify(relay, "MIL-STD-202", out=tmp_path, tests=["213 A"], component=COMPONENT)
 
 
@@ -411,6 +421,18 @@ def test_errors_in_a_scene_have_their_line(tmp_path: Path, text: str, message: s
     path.write_text(text)
     with pytest.raises(RelayContactError, match=f"^{re.escape(str(path))}:{message}"):
         run(path, component=COMPONENT)
+
+
+def test_a_link_to_a_scene_has_table_and_spring_beside_the_link(tmp_path: Path) -> None:
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "scene").write_text(
+        "stop = 1e-3\ncommunicationStep = 1e-4\noutputs = ['contact.force']\n"
+        "parameters.beam.file = 'spring.toml'\ninputs.file = 'course.csv'\n"
+    )
+    (tmp_path / "scene.toml").symlink_to(tmp_path / "kept" / "scene")
+    (tmp_path / "spring.toml").write_bytes((ROOT / "scenes/springs/tapered-cube.toml").read_bytes())
+    (tmp_path / "course.csv").write_text("time,contact.current\n0,0\n1,1\n")
+    assert Scene.read(tmp_path / "scene.toml", COMPONENT).values["beam.file"] == str(tmp_path / "spring.toml")
 
 
 def test_a_table_in_a_folder_beside_the_scene_and_a_change_of_its_input(tmp_path: Path) -> None:

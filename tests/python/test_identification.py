@@ -619,6 +619,17 @@ def test_each_position_has_its_overtravel(tmp_path: Path) -> None:
         # The spring lies beside the file, as it was found.
         assert Path(str(written.positions[position]["beam.file"])).parent.resolve() == out.resolve()
     assert result["spring.stiffness"].value == pytest.approx(1.0, abs=1e-3)
+    assert written.uncertainty["contact.overtravel"] != relay.uncertainty["contact.overtravel"]
+    # What is known of one position is not known of the other.
+    result = found(paths[1], relay=file, parameters=["contact.overtravel"], out=out)
+    assert result.notes[-1].startswith("contact.overtravel: in the position coil without current it is that of the")
+    written = Relay.read(out / "relay.toml", COMPONENT)
+    assert written.uncertainty["contact.overtravel"] == relay.uncertainty["contact.overtravel"]
+    # A model that names its spring keeps it as it was.
+    other = f"[[model]]\nparameters.beam.file = '{ROOT}/scenes/springs/tapered-cube.toml'\n"
+    file.write_text(f"{file.read_text()}\n{other}")
+    *_, told = found(*paths, relay=file, parameters=["contact.overtravel", "spring.stiffness"], out=out).notes
+    assert "the model 'model 4' of the relay's file keeps its own beam.file" in told
     paths[0].write_text(paths[0].read_text().split("\n", 1)[1])
     with pytest.raises(RelayContactError, match=r"0.csv:1: which position of the coil"):
         found(*paths, relay=file)

@@ -24,7 +24,7 @@ from relay_contact.component import sine as vibration
 from relay_contact.qualification import FEW, Relay, Standard, assessment, judgement, plots, qualify, response, standards
 from relay_contact.qualification.distributions import Correlation, Distribution
 from relay_contact.qualification.excitation import Random, Shock, Sine
-from relay_contact.qualification.page import write
+from relay_contact.qualification.page import form, springs, write
 from relay_contact.qualification.response import interrupting_force, respond
 from relay_contact.qualification.results import Assessment, Chance, Finding, Tested
 from relay_contact.qualification.trials import Specimen, steady
@@ -339,6 +339,19 @@ def test_names_in_figures_are_no_formulas(tmp_path: Path) -> None:
     assert again == texts
     assert f"{name}: pass" in ticks
     assert {name, r"$\mathdefault{10^{1}}$"} < set(texts)
+
+
+def test_the_page_has_the_axial_force_and_all_springs(tmp_path: Path) -> None:
+    """Springs of the same name, too, from another folder."""
+    assert "force of the present deflection" in form(COMPONENT, {"effects.axialForce": "FromDeflection"})
+    assert "no axial force" in form(COMPONENT, {})
+    text = (ROOT / "scenes/springs/tapered-cube.toml").read_text()
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "spring.toml").write_text(f"# {folder}\n{text}")
+    path = tmp_path / "relay.toml"
+    path.write_text("model = [{parameters.beam.file = 'a/spring.toml'}, {parameters.beam.file = 'b/spring.toml'}]\n")
+    assert [text[:3] for _, text in springs(Relay.read(path, COMPONENT))] == ["# a", "# b"]
 
 
 def test_no_legend_of_a_figure_is_cut_off(paper: Assessment) -> None:

@@ -154,6 +154,9 @@ def test_files_of_measuring_programs(tmp_path: Path) -> None:
     (tmp_path / "part.mat").write_bytes((tmp_path / "road.mat").read_bytes()[:50])
     with pytest.raises(RelayContactError, match=r"part.mat: cannot be read: "):
         read(tmp_path / "part.mat")
+    savemat(tmp_path / "complex.mat", {"t": TIME, "Z": VALUES + 1j * (TIME > 12.5059)})
+    with pytest.raises(RelayContactError, match=r"channel Z: value 297: .*first of 104: .* is a real"):
+        read(tmp_path / "complex.mat", unit="g")
     for suffix in ("uff", "tdms"):
         with pytest.raises(RelayContactError, match=r"channel Z: time in min: not allowed, allowed is s, ms, us"):
             read(tmp_path / f"roadmin.{suffix}")

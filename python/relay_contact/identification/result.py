@@ -148,6 +148,22 @@ def unknowns(
     return found
 
 
+def wider(relay: Relay, path: Path, found: list[Found]) -> dict[str, list[str]]:
+    """Return names that the relay's file leaves more uncertain, in some positions in which they were not found.
+
+    `[uncertainty]` holds in all positions.
+    """
+    tables, told = read_toml(path).get("position", [{}]), {}
+    for name in sorted({each.unknown.name for each in found} & relay.uncertainty.keys()):
+        mine = [each for each in found if each.unknown.name == name]
+        known = {place for each in mine for place in each.unknown.positions}
+        left = [place for place, table in zip(relay.positions, tables, strict=True)
+                if has(table, name) and place not in known]  # fmt: skip
+        if left and relay.uncertainty[name].half(mine[0].unknown.start) > max(each.half for each in mine):
+            told[name] = left
+    return told
+
+
 def has(position: Mapping[str, Any], name: str) -> bool:
     """Tell whether the table of a position gives a parameter itself."""
     return any(each == name for each, *_ in leaves(position.get("parameters", {})))
@@ -285,14 +301,21 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         "file that of this relay, and its model complete?"
         for each in found if abs(np.log(each.value / each.unknown.start)) > FAR
     ]  # fmt: skip
+    notes += [
+        f"{name}: in the position {', '.join(left)} it is that of the relay's file, whose uncertainty stays: it holds "
+        "in all positions"
+        for name, left in wider(relay, path, found).items()
+    ]  # fmt: skip
     if any("Coulomb" in values.values() for values in relay.positions.values()):
         notes.append("measurements are compared with a contact without the friction of the relay's file")
     for other in fit.rivals() if fit.unknowns else []:
         told = (f"{each.label} = {each.start * np.exp(x):.4g}" for each, x in zip(fit.unknowns, other, strict=False))
         notes.append(f"other values fit nearly as well: {', '.join(told)}; the intervals are those of the best alone")
+    # What was found of a spring is in its file.
+    stated = names | {"beam.file" for name in names if name.startswith(PREFIX)}
     for model in relay.models:
         # What `qualify` takes in place of what was found.
-        if kept := sorted(model.parameters.keys() & names):
+        if kept := sorted(model.parameters.keys() & stated):
             text = f"keeps its own {', '.join(kept)}: it was not fitted to the data; identify it by a file of its own"
             notes.append(f"the model {model.name!r} of the relay's file {text}")
     beside = moved @ root / sizes[:, None]

@@ -67,13 +67,16 @@ def form(component: Component, values: Values) -> str:
         return values.get(f"{group}.{name}", component.start(f"{group}.{name}"))
 
     law = LAWS[has("contactLaw")].format(has("stiffnessExponent", "contact"))
-    axial = {"None": "no axial force", "Prescribed": "a given axial force"}
+    axial = {
+        "None": "no axial force", "Prescribed": "a given axial force", "FromPreload": "the axial force of the preload",
+        "FromDeflection": "the axial force of the present deflection",
+    }  # fmt: skip
     parts = [
         "slender spring with Rayleigh damping",
         *(["fixed contact on a spring"] if values.get("fixed.file") else []),
         *([PUSHERS[has("pusher")]] if has("pusher") != NONE else []),
         f"{law} {'with' if has('contactDamping') else 'without'} viscoelastic damping",
-        axial.get(str(has("axialForce")), "the axial force of the preload"),
+        axial[has("axialForce")],
         "no friction" if has("friction") == "None" else f"friction of {has('coefficient', 'friction'):g}",
     ]
     return ", ".join(parts)
@@ -141,11 +144,11 @@ def inputs(component: Component, relay: Relay) -> pages.Table:
 
 def springs(relay: Relay) -> list[tuple[str, str]]:
     """Return names and contents of the spring files."""
-    files = {
-        Path(str(values[name])).name: content
+    files = dict.fromkeys(
+        (Path(str(values[name])).name, content)
         for values in columns_of(relay).values() for name, content in springs_of(values).items()
-    }  # fmt: skip
-    return [(name, content.decode("utf-8-sig")) for name, content in files.items()]
+    )  # fmt: skip
+    return [(name, content.decode("utf-8-sig")) for name, content in files]
 
 
 def position_context(assessment: Assessment, component: Component, name: str, values: Values) -> dict[str, Any]:

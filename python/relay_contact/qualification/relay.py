@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -143,12 +144,8 @@ class Relay:
                 if positions[name].get(switch) == kind and needed not in positions[name]:
                     text = f"parameters.{needed}: missing, allowed is {allowed}"
                     raise RelayContactError(f"{path}:{schema.line(path, place)}: {schema.dotted(place)}.{text}")
-        uncertainty = uncertainties(path, content.uncertainty, positions, component)
-        for number, name in enumerate(content.correlation.names):
-            if name not in uncertainty:
-                allowed = f"allowed are the names in [uncertainty]{nearest(name, uncertainty)}"
-                raise schema.refused(path, ("correlation", "names", number), name, allowed)
         models: dict[str, Model] = {}
+        cases: dict[str, Values] = {}
         for number, rival in enumerate(content.model):
             place = ("model", number)
             name = rival.name or ("as described" if len(content.model) == 1 else f"model {number + 1}")
@@ -159,15 +156,20 @@ class Relay:
                 raise schema.refused(path, place, name, f"has the parameters of {twin}")
             models[name] = replace(rival, name=name, parameters=changed)
             with schema.at(path, *place):
-                for uncertain in changed.keys() & uncertainty.keys():
-                    uncertainty[uncertain].check(uncertain, component.value(changed, uncertain), name)
-                for values in positions.values():
-                    blow(component, {**values, **changed})
-                    check_held(component, {**values, **changed})
+                for position, values in positions.items():
+                    case = f"{position} by {name}" if len(content.model) > 1 else position
+                    cases[case] = {**values, **changed}
+                    blow(component, cases[case])
+                    check_held(component, cases[case])
         check_used(path, content, component, [[{**own, **each.parameters} for each in models.values()]
                                               for own in positions.values()])  # fmt: skip
+        uncertainty = uncertainties(path, content.uncertainty, cases, component)
+        for number, name in enumerate(content.correlation.names):
+            if name not in uncertainty:
+                allowed = f"allowed are the names in [uncertainty]{nearest(name, uncertainty)}"
+                raise schema.refused(path, ("correlation", "names", number), name, allowed)
         title, roughness = content.title or path.stem, content.contact.roughness
-        axes = {name: participations(path, name, own, positions) for name, own in content.axes.items()}
+        axes = {name: participations(path, name, own, cases) for name, own in content.axes.items()}
         return cls(
             title, positions, uncertainty, tuple(models.values()), content.monitor, roughness, content.correlation,
             axes, digest(path.read_bytes()),
@@ -200,8 +202,9 @@ def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> Non
     """
     monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
     text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed, the contact has"
-    for name, values in relay.positions.items():
-        with component.started(values) as contact:
+    for (position, values), model in product(relay.positions.items(), relay.models):
+        name = f"{position} by {model.name}" if len(relay.models) > 1 else position
+        with component.started({**values, **model.parameters}) as contact:
             force, resistance, apart = contact.real("contact.force", "contact.resistance", "resistance.open")
             parallel, offset = contact.real("parallel.force", "parallel.offset")
         if parallel > 0 and force <= 0:
@@ -236,7 +239,7 @@ def moved(path: Path, content: Content, component: Component) -> dict[str, Value
             f"{path}:{schema.line(path, ('armature',))}: pusher: missing, by which the armature moves it"
         )
     file = {name: value for name, _, value in schema.leaves(content.parameters)}.get("beam.file", "")
-    has_place = bool(file) and by_modes(path.resolve().parent / str(file))
+    has_place = bool(file) and by_modes(path.parent / str(file))
     for name, own in tables.items():
         # With start values that nobody chose a verdict would be that of another relay.
         for entry in NEEDED[name]:
@@ -246,10 +249,10 @@ def moved(path: Path, content: Content, component: Component) -> dict[str, Value
     return {"effects.pusher": kind} | found
 
 
-def participations(path: Path, axis: str, own: list[float], positions: dict[str, Values]) -> Values:
-    """Return the participations of the modes in an axis as factors of those in the spring file."""
+def participations(path: Path, axis: str, own: list[float], cases: dict[str, Values]) -> Values:
+    """Return the participations of the modes in an axis as factors of those in the spring file, that of all cases."""
     found: dict[str, float] = {}
-    for values in positions.values():
+    for values in cases.values():
         if values.get("fixed.file") or values.get("effects.pusher", "None") != "None":
             text = "further axes are those of the moving contact's spring alone, without other parts"
             raise schema.refused(path, ("axes", axis), own, text)
@@ -265,20 +268,23 @@ def participations(path: Path, axis: str, own: list[float], positions: dict[str,
             if not mode["participation"]:
                 text = f"mode {number} has none in the spring file, of which this is a factor"
                 raise schema.refused(path, ("axes", axis, number - 1), part, text)
-            found[f"{PREFIX}mode.{number}.participation"] = part / mode["participation"]
+            factor = part / mode["participation"]
+            if found.setdefault(f"{PREFIX}mode.{number}.participation", factor) != factor:
+                text = f"mode {number} has another participation in another spring file of this relay"
+                raise schema.refused(path, ("axes", axis, number - 1), part, text)
     return found
 
 
 def uncertainties(
-    path: Path, table: dict[str, Any], positions: dict[str, Values], component: Component
+    path: Path, table: dict[str, Any], cases: dict[str, Values], component: Component
 ) -> dict[str, Distribution]:
-    """Return the uncertainties of a relay's file by name; each changes something in one position at least."""
+    """Return the uncertainties of a relay's file by name; each changes something in one position by one model."""
     found: dict[str, tuple[schema.Place, Distribution]] = {}
     for name, keys, part in schema.leaves(table):
         place = ("uncertainty", *keys)
         with schema.at(path, *place):
             if is_entry(name):
-                for values in positions.values():
+                for values in cases.values():
                     allowed = known_of(values)
                     if name not in allowed:
                         text = f"no such entry in the spring file{nearest(name, allowed)}"
@@ -293,16 +299,16 @@ def uncertainties(
             found[name] = place, distributions.read(part)
         except ValueError as error:
             raise schema.refused(path, place, part, str(error)) from error
-    rest = {name: blow(component, values) for name, values in positions.items()} if found else {}
+    rest = {case: blow(component, values) for case, values in cases.items()} if found else {}
     for name, (place, distribution) in found.items():
         with schema.at(path, *place):
             used = [distribution.part == 0]
-            for position, values in positions.items():
+            for case, values in cases.items():
                 start = component.value(values, name)
                 ends = [start, start] if not start else start * distribution.factor(distributions.SCORES, start)
-                mine = [blow(component, values, {name: float(end)}) != rest[position] for end in ends]
+                mine = [blow(component, values, {name: float(end)}) != rest[case] for end in ends]
                 if any(mine):
-                    distribution.check(name, start, position)
+                    distribution.check(name, start, case)
                 used += mine
             if not any(used):
                 raise RelayContactError(
