@@ -86,10 +86,10 @@ fn component() -> Result<()> {
     stage("Python lint", || tool(&["ruff", "check"]))?;
     stage("Python format", || tool(&["ruff", "format", "--check"]))?;
     stage("Python types", || tool(&["mypy"]))?;
-    // Which the Python tests install into an empty environment.
-    stage("wheel", wheel::run)?;
     let missing = Rust::find().and_then(|rust| lld(&rust.rustc)).err().map(|error| error.to_string());
     if_installed("simulation in the browser, site", missing.is_none(), &missing.unwrap_or_default(), site::build)?;
+    // With the page, if there is one. The Python tests install it into an empty environment.
+    stage("wheel", wheel::run)?;
     stage("Python tests and examples", || python::test(&["examples/python", "tests/python", "explore"], &component))?;
     importers::stages(&component)
 }
