@@ -234,6 +234,7 @@ class Component:
             if kind != "Real" and abs(value) < 2**31 and value == int(value) and (kind != "Boolean" or value in (0, 1)):
                 return int(value)
         if isinstance(value, str | bool):
+            # The variant for other tools takes neither, and is refused here by its name.
             self.choices("effects.excitation")
         others = {"Boolean": "true, false", "Real": "a finite number"}
         allowed = ", ".join(choices) or others.get(kind, "a whole number")

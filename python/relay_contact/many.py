@@ -115,17 +115,17 @@ def run_many(
     component = component or default_component()
     # A text alone would be a scene for each of its letters.
     cases = [scenes] if isinstance(scenes, str | Path | Scene) else list(scenes)
-    for number, case in enumerate(cases):
+    pairs = [case if isinstance(case, tuple) and len(case) == 2 else (case, {}) for case in cases]
+    for number, (scene, changes) in enumerate(pairs):
         # Else all that ran before it would be lost.
-        scene, changes = case if isinstance(case, tuple) and len(case) == 2 else (case, {})
         if not (isinstance(scene, str | Path | Scene) and isinstance(changes, Mapping)):
             text = "not allowed, allowed is a scene, alone or as (scene, {name: value})"
-            raise RelayContactError(f"scenes[{number}] = {shown(case)}: {text}")
+            raise RelayContactError(f"scenes[{number}] = {shown(cases[number])}: {text}")
     read = cache(Scene.read)
     names = [component.name(name) for name in ([outputs] if isinstance(outputs, str) else outputs or [])]
 
-    def row(case: Case) -> tuple[dict[str, Value], dict[str, float], dict[str, str]]:
-        given, changes = case if isinstance(case, tuple) else (case, {})
+    def row(pair: tuple[Scene | str | Path, Values]) -> tuple[dict[str, Value], dict[str, float], dict[str, str]]:
+        given, changes = pair
         changed: dict[str, Value] = {}
         found: dict[str, float] = {}
         told = {"scene": given.title if isinstance(given, Scene) else str(given), "warning": "", "error": ""}
@@ -153,8 +153,8 @@ def run_many(
             progress(done)
 
     form = "{desc} {percentage:3.0f} %|{bar}| {n} of {total} scenes"
-    with progress_bar(len(cases), form, progress is True, desc="simulated") as bar:
-        rows = side_by_side(row, cases, workers, tell)
+    with progress_bar(len(pairs), form, progress is True, desc="simulated") as bar:
+        rows = side_by_side(row, pairs, workers, tell)
     named = [name for part in (0, 1) for each in rows for name in each[part]]
     columns = dict.fromkeys(["scene", *named, "warning", "error"])
     table = pd.DataFrame([{**changed, **found, **told} for changed, found, told in rows], columns=list(columns))

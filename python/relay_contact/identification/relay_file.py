@@ -12,7 +12,7 @@ from tomlkit.items import InlineTable
 
 from relay_contact.component import Component
 from relay_contact.files import write_at_once
-from relay_contact.identification.result import Found, Identification, has, wider
+from relay_contact.identification.result import Found, Identification, has
 from relay_contact.qualification.relay import TABLES
 from relay_contact.schema import leaves
 from relay_contact.spring import PREFIX, SPRING_FILES, STIFFNESS, text_of
@@ -79,7 +79,6 @@ def text(result: Identification, spring: str, folder: Path) -> str:
     exact = [label for label in result.missing if label.split(",")[0] not in result.relay.uncertainty]
     content["title"] = f"{result.relay.title}, identified{' but for ' if exact else ''}{', '.join(exact)}"
     tables = dict(zip(result.relay.positions, content.get("position", [{}]), strict=True))
-    stays = wider(result.relay, result.path, result.found)
     for each in result.found:
         name = each.unknown.name
         if not name.startswith(PREFIX):
@@ -89,7 +88,7 @@ def text(result: Identification, spring: str, folder: Path) -> str:
             for table in [place["parameters"] for place in own] or [whole]:
                 put(table, name, number(each.value, each.half), remark)
         widest = max((other for other in result.found if other.unknown.name == name), key=lambda other: other.half)
-        if name not in stays:
+        if name not in result.wider:
             put(content["uncertainty"], name, uncertainty(widest), "identified")
     names, matrix = correlations(result)
     content["correlation"] = tomlkit.table()

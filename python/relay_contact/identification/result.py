@@ -76,6 +76,8 @@ class Identification:
     curves: list[tuple[Array, Array]]
     """The same closer together, to be drawn."""
     notes: list[str]
+    wider: dict[str, list[str]]
+    """Those found that the relay's file leaves more uncertain, in positions in which they were not found: these."""
 
     def __getitem__(self, label: str) -> Found:
         """Return what was found of a parameter, by its name, with its position where it has one for each."""
@@ -301,10 +303,11 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
         "file that of this relay, and its model complete?"
         for each in found if abs(np.log(each.value / each.unknown.start)) > FAR
     ]  # fmt: skip
+    stays = wider(relay, path, found)
     notes += [
         f"{name}: in the position {', '.join(left)} it is that of the relay's file, whose uncertainty stays: it holds "
         "in all positions"
-        for name, left in wider(relay, path, found).items()
+        for name, left in stays.items()
     ]  # fmt: skip
     if any("Coulomb" in values.values() for values in relay.positions.values()):
         notes.append("measurements are compared with a contact without the friction of the relay's file")
@@ -320,7 +323,9 @@ def conclude(fit: Fit, missing: dict[str, str], relay: Relay, path: Path) -> Ide
             notes.append(f"the model {model.name!r} of the relay's file {text}")
     beside = moved @ root / sizes[:, None]
     whole = np.block([[together / np.outer(sizes, sizes), beside], [beside.T, root @ root]])
-    return Identification(relay, path, found, missing, correlation, others, whole, fit.sets, fitted, curves, notes)
+    return Identification(
+        relay, path, found, missing, correlation, others, whole, fit.sets, fitted, curves, notes, stays,
+    )  # fmt: skip
 
 
 def curve(fit: Fit, each: Set, model: Array) -> tuple[Array, Array]:

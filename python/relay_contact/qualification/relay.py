@@ -1,9 +1,8 @@
 """A relay as its file describes it: contacts, coil positions, and how well its parameters are known."""
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -145,7 +144,6 @@ class Relay:
                     text = f"parameters.{needed}: missing, allowed is {allowed}"
                     raise RelayContactError(f"{path}:{schema.line(path, place)}: {schema.dotted(place)}.{text}")
         models: dict[str, Model] = {}
-        cases: dict[str, Values] = {}
         for number, rival in enumerate(content.model):
             place = ("model", number)
             name = rival.name or ("as described" if len(content.model) == 1 else f"model {number + 1}")
@@ -156,13 +154,12 @@ class Relay:
                 raise schema.refused(path, place, name, f"has the parameters of {twin}")
             models[name] = replace(rival, name=name, parameters=changed)
             with schema.at(path, *place):
-                for position, values in positions.items():
-                    case = f"{position} by {name}" if len(content.model) > 1 else position
-                    cases[case] = {**values, **changed}
-                    blow(component, cases[case])
-                    check_held(component, cases[case])
+                for values in positions.values():
+                    blow(component, {**values, **changed})
+                    check_held(component, {**values, **changed})
         check_used(path, content, component, [[{**own, **each.parameters} for each in models.values()]
                                               for own in positions.values()])  # fmt: skip
+        cases = by_models(positions, models.values())
         uncertainty = uncertainties(path, content.uncertainty, cases, component)
         for number, name in enumerate(content.correlation.names):
             if name not in uncertainty:
@@ -174,6 +171,14 @@ class Relay:
             title, positions, uncertainty, tuple(models.values()), content.monitor, roughness, content.correlation,
             axes, digest(path.read_bytes()),
         )  # fmt: skip
+
+
+def by_models(positions: Mapping[str, Values], models: Collection[Model]) -> dict[str, Values]:
+    """Return the parameters of each position by each model, by both names; by that of the position for one model."""
+    return {
+        f"{position} by {model.name}" if len(models) > 1 else position: {**values, **model.parameters}
+        for position, values in positions.items() for model in models
+    }  # fmt: skip
 
 
 def check_used(path: Path, content: Content, component: Component, known: list[list[Values]]) -> None:
@@ -202,9 +207,8 @@ def check_monitor(component: Component, relay: Relay, contacts: Contacts) -> Non
     """
     monitor = f"a monitor of {contacts.voltage:g} V and {contacts.current:g} A"
     text = f"{monitor} sees an interruption from {contacts.threshold:g} Ohm on: not allowed, the contact has"
-    for (position, values), model in product(relay.positions.items(), relay.models):
-        name = f"{position} by {model.name}" if len(relay.models) > 1 else position
-        with component.started({**values, **model.parameters}) as contact:
+    for name, values in by_models(relay.positions, relay.models).items():
+        with component.started(values) as contact:
             force, resistance, apart = contact.real("contact.force", "contact.resistance", "resistance.open")
             parallel, offset = contact.real("parallel.force", "parallel.offset")
         if parallel > 0 and force <= 0:
