@@ -172,6 +172,24 @@ def test_a_level_that_nothing_fails_is_not_sought_beyond_what_the_component_allo
     assert max(tried) < most
 
 
+@pytest.mark.parametrize("test", [SHOCK, replace(SINE, frequencies=(10.0, 200.0), double_amplitude=None)])
+def test_a_stiff_strip_has_the_margin_of_statics_at_the_largest_levels(test: Any) -> None:  # noqa: ANN401
+    """Far below its resonance a strip opens where its inertia bends it by the overtravel: at four million g.
+
+    To what 10 us ask of a pulse of 3 ms or a period of 5 ms, and to the square of frequency over resonance.
+    """
+    length, height, overtravel = 1e-3, 2e-4, 5e-5
+    values: Values = {"beam.length": length, "beam.thickness": height, "contact.overtravel": overtravel,
+                      "beam.stiffnessDamping": 1e-7, "contact.damping": 1e-7}  # fmt: skip
+    with COMPONENT.started(values) as contact:
+        density, width, modulus, tip = contact.real("beam.density", "beam.width", "beam.youngsModulus", "tip.mass")
+    bend = density * width * height * length**4 / 8 + tip * length**3 / 3
+    level = overtravel * modulus * width * height**3 / 12 / bend
+    assert level > 1e6
+    found = judgement.judged(placed(described(values), replace(test, acceleration=1e5)), test, FEW).margin.margin
+    assert found == pytest.approx(level / GRAVITY / 1e5, rel=1e-3)
+
+
 def test_a_record_is_sought_in_both_directions() -> None:
     """Interruptions of 0.3 ms in a burst: 1.25 times above the level at which they begin there are none."""
     values: Values = {
