@@ -109,6 +109,28 @@ def test_keys_change_a_value_and_the_link_brings_it_back(page: Page) -> None:
     assert page.locator("#scene").text_content() == scene
 
 
+def test_each_position_of_a_slider_is_another_value(page: Page) -> None:
+    opened(page)
+    same = page.evaluate(
+        "CONTROLS.filter((one) => !one.choices && new Set(Array.from({ length: positions(one) + 1 },"
+        " (_, n) => fromSlider(one, n / positions(one)))).size <= positions(one)).map(({ name }) => name)"
+    )
+    assert same == []
+
+
+def test_a_number_that_is_not_allowed_gives_way_to_the_one_simulated(page: Page) -> None:
+    opened(page)
+    box = page.get_by_label("Overtravel", exact=True)
+    for wrong in ("3000", ""):
+        box.fill(wrong)
+        box.press("Tab")
+        assert box.input_value() == "0.2"
+    assert box.get_attribute("title") == "0.02 to 0.6 mm"
+    box.fill("0.30")
+    box.press("Tab")
+    assert box.input_value() == "0.3"
+
+
 @pytest.mark.parametrize("hash_", ["beam.length=1e9", "beam.length=", "beam.length=NaN", "effects.contactLaw=<b>", "x"])
 def test_a_wrong_link_leaves_the_start_values(page: Page, hash_: str) -> None:
     opened(page)

@@ -48,7 +48,10 @@ function send(scene) {
 let searching = null;
 let later = 0;
 function search() {
-  searching?.terminate();
+  if (searching) {
+    searching.terminate();
+    searching.onmessage = null; // what it has sent is of other values
+  }
   clearTimeout(later);
   [levels, broken] = [new Map(), ""];
   later = setTimeout(() => {
@@ -64,16 +67,16 @@ function search() {
 // ---- what the library gives: the order is that of `curves` ----
 function read({ numbers, taken }) {
   const [count, rows, events, preload, frequency, longest, total, forceError] = numbers;
-  const column = (n) => Float64Array.from({ length: rows }, (_, row) => numbers[8 + 6 * row + n]);
-  const [time, force, least, most, resistance, highest] = [0, 1, 2, 3, 4, 5].map(column);
+  const column = (n) => Float64Array.from({ length: rows }, (_, row) => numbers[8 + 5 * row + n]);
+  const [time, force, least, most, highest] = [0, 1, 2, 3, 4].map(column);
   const end = time[rows - 1];
   const open = [];
   for (let n = 0; n < events; n++) {
-    const [instant, opens] = numbers.slice(8 + 6 * rows + 2 * n);
+    const [instant, opens] = numbers.slice(8 + 5 * rows + 2 * n);
     if (opens) open.push([instant, end]);
     else if (open.length) open[open.length - 1][1] = instant;
   }
-  return { count, preload, frequency, longest, total, forceError, time, force, least, most, resistance, highest, open, taken };
+  return { count, preload, frequency, longest, total, forceError, time, force, least, most, highest, open, taken };
 }
 
 // ---- drawing ----
@@ -86,7 +89,7 @@ function draw() {
     state.textContent = run.error;
     return;
   }
-  const { time, force, least, most, resistance, highest, open, preload } = run;
+  const { time, force, least, most, highest, open, preload } = run;
   const ms = time.map((value) => 1e3 * value);
   const bands = open.map((band) => band.map((value) => 1e3 * value));
   const x = { low: 0, high: ms[ms.length - 1], label: "time, ms" };
@@ -105,14 +108,14 @@ function draw() {
   element("force-caption").textContent = `Contact force: ${digits(bottom)} to ${digits(top)} N, ${digits(preload)} N at rest. `
     + `${top > shown ? "Higher peaks are cut off. " : ""}First natural frequency ${digits(run.frequency, 4)} Hz. ${open.length ? "Shaded: open. " : ""}Computed in ${run.taken.toFixed(0)} ms, estimated error of the force ${digits(100 * run.forceError, 1)} %.`;
   const worst = highest.reduce((a, b) => Math.max(a, b));
-  const best = resistance.reduce((a, b) => Math.min(a, b));
+  const best = highest.reduce((a, b) => Math.min(a, b));
   const low = 10 ** Math.floor(Math.log10(best) - 0.1);
   const high = Math.min(CAP, Math.max(10 ** Math.ceil(Math.log10(worst) + 0.1), 10 * low));
   plot(element("resistance"), {
     x, y: { low, high, log: true, label: "contact resistance, Ω" }, bands, curves: [{ x: ms, y: highest }],
     marks: THRESHOLD < high ? [{ y: THRESHOLD, text: `${THRESHOLD} Ω: interrupted` }] : [],
   });
-  element("resistance-caption").textContent = `Highest contact resistance at each instant: ${digits(1e3 * best)} mΩ to `
+  element("resistance-caption").textContent = `Highest contact resistance in each of ${highest.length - 1} steps: ${digits(1e3 * best)} mΩ to `
     + `${worst > CAP ? "open" : `${digits(1e3 * worst)} mΩ`}. Interrupted from ${THRESHOLD} Ω on for 10 µs: ${interruptions}.`;
   drawLevels();
 }
@@ -156,17 +159,21 @@ function add(control) {
     row.lastElementChild.oninput = ({ target }) => change(control, target.value);
   } else {
     row.innerHTML = `${label}<input type="number" id="${control.name}" min="${control.min}" max="${control.max}" step="any">`
-      + `<span class="unit">${control.unit}</span><input type="range" aria-label="${control.label}, slider" min="0" max="1000" step="1">`;
+      + `<span class="unit">${control.unit}</span><input type="range" aria-label="${control.label}, slider" min="0" max="${positions(control)}" step="1">`;
     const [, box, , slider] = row.children;
+    box.title = `${control.min} to ${control.max} ${control.unit}`;
+    box.onchange = () => show(); // what is not allowed gives way to the value that is simulated
     box.oninput = () => box.value !== "" && box.validity.valid && change(control, tidy(box.valueAsNumber / control.per), box);
-    slider.oninput = () => change(control, tidy(fromSlider(control, slider.valueAsNumber / 1000) / control.per), slider);
+    slider.oninput = () => change(control, tidy(fromSlider(control, slider.valueAsNumber / positions(control)) / control.per), slider);
   }
   rows.set(control, row);
 }
 
+// Of a slider: each changes the value, which has three digits if it is logarithmic.
+const positions = ({ min, max, step, log }) => (log ? Math.floor(Math.log(max / min) / Math.log(1.01)) : Math.round((max - min) / step));
+
 function fromSlider({ min, max, step, log }, part) {
   const value = log ? min * (max / min) ** part : min + part * (max - min);
-  // A logarithmic one goes on three digits, as its steps have any size.
   return log ? Number(value.toPrecision(3)) : tidy(Math.round(value / step) * step);
 }
 
@@ -189,7 +196,7 @@ function show(from) {
     const shown = tidy(values[control.name] * control.per);
     const { min, max, log } = control;
     if (box !== from) box.value = Number(shown.toPrecision(6));
-    if (slider !== from) slider.value = 1000 * (log ? Math.log(shown / min) / Math.log(max / min) : (shown - min) / (max - min));
+    if (slider !== from) slider.value = positions(control) * (log ? Math.log(shown / min) / Math.log(max / min) : (shown - min) / (max - min));
     slider.setAttribute("aria-valuetext", `${Number(shown.toPrecision(6))} ${control.unit}`);
   }
   const scene = sceneOf(values);

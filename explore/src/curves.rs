@@ -6,11 +6,10 @@ use relay_contact::simulation::Simulation;
 use relay_contact::variables::{IntegerOutput, RealOutput};
 
 /// What the page shows at a communication point; the extremes are those since the point before.
-const COLUMNS: [RealOutput; 5] = [
+const COLUMNS: [RealOutput; 4] = [
     RealOutput::ContactForce,
     RealOutput::StepMinimumForce,
     RealOutput::StepMaximumForce,
-    RealOutput::ContactResistance,
     RealOutput::StepMaximumResistance,
 ];
 
@@ -62,9 +61,9 @@ mod tests {
         let [count, rows, events] = [numbers[0], numbers[1], numbers[2]];
         // It is open at the end.
         assert_eq!((rows, count, events), (401.0, 4.0, 7.0));
-        let after = 8 + 6 * 401;
+        let after = 8 + 5 * 401;
         assert_eq!(numbers.len(), after + 2 * 7);
-        assert_eq!(numbers[after - 6], 0.004);
+        assert_eq!(numbers[after - 5], 0.004);
         // Open for as long as the interruptions say, but for the time with little force before and after.
         let mut open = 0.004;
         for (event, opens) in numbers[after..].chunks(2).zip([1.0, 0.0].into_iter().cycle()) {

@@ -45,9 +45,8 @@ pub(super) enum Failure {
     Remarks(Vec<Remark>),
     /// A force that may be wrong by more than the tolerance. The step is done.
     #[error(
-        "at {} s contact.force may be wrong by more than the tolerance {tolerance:e} (estimate: solver.forceError = {error:.1e}): \
-         errors grow with each closing of this contact, or {modes} modes are too few for its impacts. Not reported again",
-        number(*time)
+        "at {time:.9} s contact.force may be wrong by more than the tolerance {tolerance:e} (estimate: solver.forceError = {error:.1e}): \
+         errors grow with each closing of this contact, or {modes} modes are too few for its impacts. Not reported again"
     )]
     Inaccurate { time: f64, tolerance: f64, error: f64, modes: usize },
     #[error(
