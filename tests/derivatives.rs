@@ -60,6 +60,7 @@ fn the_voltage_follows_the_current() {
     assert_eq!(simulation.real(RealOutput::ContactVoltage), (0.1 + 50.0 * 1e-3) / (1.0 / resistance));
     let rate = simulation.rate(RealOutput::ContactVoltage).unwrap();
     assert!((rate / (50.0 * resistance) - 1.0).abs() < 1e-12, "{rate}");
+    assert_eq!(simulation.rate(RealOutput::ContactTemperature), Some(0.0), "it does not heat");
     // Without a derivative it is held.
     inputs.hold();
     simulation.step(&inputs, 1e-3, 1e-3).unwrap();
@@ -100,7 +101,7 @@ type Three = [Vec<(f64, f64)>; 3];
 
 /// A derivative lies between the slopes just before and just after it, at ends of the integrator's steps and inside them. Values are
 /// wrong by the tolerance, so slopes by that over the time between two. Looked at every `size` seconds over 2 ms, where the last of
-/// the points so far `counts`, while the fixed contact moves at a speed (m/s).
+/// the points so far `counts`, while the fixed contact moves at a speed (m/s) and the current falls by a quarter.
 fn check_slopes(
     case: &str,
     mut scene: Scene,
@@ -109,12 +110,19 @@ fn check_slopes(
     counts: impl Fn(RealOutput, &[Three]) -> bool,
 ) {
     scene.solver.tolerance = 1e-9;
-    let mut inputs = Inputs { contact_current: -1.0, support_displacement_rate: speed, ..Inputs::default() };
+    let (current, fall) = (-1.0, 125.0);
+    let mut inputs = Inputs {
+        contact_current: current,
+        contact_current_rate: fall,
+        support_displacement_rate: speed,
+        ..Inputs::default()
+    };
     let mut simulation = Simulation::new(&scene, &inputs, 0.0).unwrap();
     let mut rows: Vec<Three> = Vec::new();
     while simulation.time() < 2e-3 {
         rows.push([size - 2.0 * NEAR, NEAR, NEAR].map(|step| {
             inputs.support_displacement = speed * simulation.time();
+            inputs.contact_current = current + fall * simulation.time();
             simulation.step(&inputs, simulation.time(), step).unwrap();
             let read = |output: &RealOutput| (simulation.real(*output), simulation.rate(*output).unwrap());
             outputs.iter().map(read).collect()

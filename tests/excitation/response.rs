@@ -97,6 +97,23 @@ fn a_linear_scene_goes_through_a_shock_in_exact_steps() {
     assert!((integrated[0] - whole[0]).abs() < 1e-10 * force_scale(&scene), "{integrated:?} {whole:?}");
 }
 
+/// Also where the generator has a longest step of its own.
+#[test]
+fn no_step_is_longer_than_the_one_allowed() {
+    for law in LAWS {
+        for (name, mut scene) in every_waveform() {
+            scene.effects.contact_law = law;
+            let steps = |maximum_step: f64| {
+                let mut scene = scene.clone();
+                scene.solver.maximum_step = maximum_step;
+                forces(&scene, &[1e-3], undriven).1
+            };
+            let (free, limited) = (steps(0.0), steps(1e-6));
+            assert!(free < 700 && limited >= 1000, "{name} {law:?}: {free} {limited}");
+        }
+    }
+}
+
 #[test]
 fn after_a_shock_or_a_sweep_the_contact_rests() {
     let shock = half_sine(0.5, 50.0 * G, 0.011);
