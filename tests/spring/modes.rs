@@ -101,6 +101,28 @@ fn sizes_that_may_be_in_another_unit_are_told() {
     assert_eq!(told(3e-3, 2e-5, 0.08), "contact.damping = 0.08 s: usual is 0 to 0.005; is it meant in another unit?");
 }
 
+/// Modes in tonnes and millimetres, of another normalisation or without the first, and a compliance in mm/N, had passed.
+#[test]
+fn modes_that_may_be_in_another_unit_are_told() {
+    let own = modes_of(&Model::new(&Scene::default(), 0.0).unwrap());
+    let told = |change: fn(&mut Modes)| {
+        let mut modes = own.clone();
+        change(&mut modes);
+        let fixed = with(Scene::default(), Shape::Modes(modes)).spring;
+        let remarks = Model::new(&Scene { fixed_spring: fixed, ..Scene::default() }, 0.0).unwrap().remarks();
+        remarks.iter().any(|remark| matches!(remark, Remark::Compliance { name: "fixed.file", .. }))
+    };
+    assert!(!told(|_| ()));
+    assert!(told(|modes| modes.compliance *= 1e3));
+    assert!(told(|modes| modes.modes = modes.modes[1..].to_vec()));
+    assert!(told(|modes| modes.modes.iter_mut().for_each(|mode| mode.contact = 1.0)));
+    assert!(told(|modes| modes.modes.iter_mut().for_each(|mode| mode.frequency *= TAU)));
+    assert!(told(|modes| {
+        modes.compliance *= 1e3;
+        modes.modes.iter_mut().for_each(|mode| mode.contact *= 1e3_f64.sqrt());
+    }));
+}
+
 #[test]
 fn damping_that_may_be_in_per_cent_or_another_unit_is_told() {
     for (damping, told) in [(8.063e-5, false), (8.063e-4, true)] {
