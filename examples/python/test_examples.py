@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
+from closing_bounce import Relay as Switched
 from own_spring_elements import CUBE, Drawing, Elements, missing, segments
 from reference import Reference
 from relay_contact import Array, Component, Scene, Values, fmu_path, read_table
@@ -242,6 +243,15 @@ def test_the_bounce_of_a_closing_contact_is_that_of_a_second_solution(run: Run, 
         stop = row["speed [m/s]"] ** 2 / overtravel * reference.carried_mass / 0.152
         if row["contact.damping [s]"] > 5e-6 and not 0.5 < stop < 1:
             assert (row["bounces on make"] > 0) == (stop > 1), row
+
+
+def test_a_gap_too_short_for_an_interruption_leaves_the_bounces() -> None:
+    relays = [Switched(Component(FMU), gap, 200e-6, 100e-6) for gap in (20e-6, 60e-6)]
+    short, long = (relay.run(0.4, 1e-7)[0] for relay in relays)
+    assert short["first touch [s]"] < 100e-6 < long["first touch [s]"]
+    for name in ("bounces on make", "bounce time [s]", "open while bouncing [s]"):
+        assert short[name] == pytest.approx(long[name], rel=1e-3)
+        assert short[name] > 0
 
 
 def test_frequencies_and_hysteresis_with_friction_are_those_of_a_second_solution(run: Run, tmp_path: Path) -> None:
