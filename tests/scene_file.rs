@@ -90,6 +90,7 @@ fn errors_are_reported_with_their_line_and_what_is_allowed() {
     #[rustfmt::skip]
     let cases = [
         ("[inputs]\nbase.acceleration = inf\n", "line 5: base.acceleration = inf m/s2: not allowed, allowed is -1000000000 to 1000000000"),
+        ("[parameters]\nbeam.length = 0.02\n\"beam.length\" = 0.01\n", "line 6: beam.length: given twice, allowed is one value"),
         ("inputs = 3", "line 4: inputs = 3: wrong type, allowed is a table"),
         ("title = 3", "line 4: title = 3: wrong type, allowed is a string"),
         ("communicationStepp = 1\n", "line 4: communicationStepp: no such key, allowed are title, stop, communicationStep, outputs, parameters, inputs; did you mean communicationStep?"),
