@@ -332,6 +332,14 @@ def test_modes_in_the_component_are_the_whole_mesh(run: Run, tmp_path: Path) -> 
         assert parts == pytest.approx(whole, rel=0.05), name
 
 
+def test_what_cannot_be_used_is_said_in_a_line(tmp_path: Path) -> None:
+    for option, value in (("--fmu", __file__), ("--out", __file__)):
+        result = ran(tmp_path, "paper_1khz", option, value)
+        assert result.returncode == 1
+        assert len(result.stderr.splitlines()) == 1
+        assert value in result.stderr
+
+
 def test_missing_programs_are_named(tmp_path: Path) -> None:
     result = ran(tmp_path, "own_spring", code="import os\nos.environ['PATH'] = ''\nrun()")
     assert result.returncode == 1
