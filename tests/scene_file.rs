@@ -180,9 +180,9 @@ fn communication_steps_fill_the_run_and_the_last_ends_with_it() -> Result<(), Sc
     assert_eq!(steps("1", "0.5")?, [(0.0, 0.5), (0.5, 0.5)]);
     assert_eq!(steps("1.25", "0.5")?, [(0.0, 0.5), (0.5, 0.5), (1.0, 0.25)]);
     assert_eq!(steps("0.5", "2")?, [(0.0, 0.5)]);
-    // 0.3 / 0.1 is less than 3 by rounding, 0.7 / 0.1 more than 7 by hair.
+    // 0.3 / 0.1 is less than 3 by rounding, 0.07 / 0.01 more than 7 by a hair.
     assert_eq!(steps("0.3", "0.1")?.len(), 3);
-    assert_eq!(steps("0.7", "0.1")?.len(), 7);
+    assert_eq!(steps("0.07", "0.01")?.len(), 7);
     Ok(())
 }
 
