@@ -91,6 +91,10 @@ pub enum SceneError {
     Unreadable { file: String, cause: String },
 }
 
+/// Largest compliance of a relay's spring, m/N, and the least share of it that modes hold, 1.
+pub(crate) const SOFTEST: f64 = 0.1;
+pub(crate) const HELD: f64 = 0.5;
+
 /// What a user should know of a scene that can be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages tell what the fields are")]
@@ -118,6 +122,14 @@ pub enum Remark {
         number(*value), number(*usual.start()), number(*usual.end())
     )]
     Unusual { name: &'static str, value: f64, unit: &'static str, usual: RangeInclusive<f64> },
+    /// Modes of a spring that are hardly a part of it, or a spring softer than any, as in other units or with modal masses other than
+    /// 1 kg.
+    #[error(
+        "{name} = {file}: compliance = {} m/N, of which its modes hold {:.2} %: usual is up to {} m/N, and at least {:.0} %; are they \
+         in m/N, Hz and 1/sqrt(kg), of modal masses of 1 kg, and is the lowest among them?",
+        number(*compliance), 100.0 * held / compliance, number(SOFTEST), 100.0 * HELD
+    )]
+    Compliance { name: &'static str, file: String, compliance: f64, held: f64 },
     /// A spring bent so far that a linear beam misses a part of its force.
     #[error(
         "contact.overtravel = {} m: the spring is bent by {bent:.2} of its length of {} m; an elastica under a load along y is \

@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn the_force_is_the_derivative_of_the_energy() {
         let magnet = Magnet { hold: 4.0, constant: 1e-4 };
-        for gap in [1e-6, 1e-4, 1e-3] {
+        for gap in [-1e-6, 1e-6, 1e-4, 1e-3] {
             let step = 1e-4 * gap;
             let [below, above] = [gap - step, gap + step].map(|gap| magnet.energy(gap, 0.7));
             let force = (above - below) / (2.0 * step);

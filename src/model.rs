@@ -12,7 +12,7 @@ use crate::beam::section::Section;
 use crate::closed_loop::system::ClosedLoop;
 use crate::contact::friction::Friction;
 use crate::contact::law::Law;
-use crate::error::Remark;
+use crate::error::{HELD, Remark, SOFTEST};
 use crate::excitation::generator::Generator;
 use crate::integrator::constants::MOTION_ROUNDING;
 use crate::integrator::step_length::StepLengths;
@@ -156,7 +156,12 @@ impl Model {
         let not_used = self.scene.spring.iter().flat_map(|spring| self.not_used(spring));
         let of_scene = [self.bent_far(), self.friction_at_touch(), self.no_interruption()];
         let remarks = of_scene.into_iter().flatten().chain(unstable).chain(not_used);
-        remarks.chain(self.joined()).chain(self.damped()).chain(self.unusual()).chain(self.few_modes.clone()).collect()
+        remarks
+            .chain(self.of_files())
+            .chain(self.damped())
+            .chain(self.unusual())
+            .chain(self.few_modes.clone())
+            .collect()
     }
 
     /// A spring bent by more than a tenth of its length. Under a load `P` that keeps its direction the elastica has
@@ -212,18 +217,25 @@ impl Model {
         })
     }
 
-    /// Springs whose tongues move as one.
-    fn joined(&self) -> impl Iterator<Item = Remark> {
+    /// Springs of a file whose tongues move as one, or whose modes may be in other units.
+    fn of_files(&self) -> impl Iterator<Item = Remark> {
         let forks = self.scene.effects.parallel_contact;
         let files = [
             (&self.scene.spring, StringParameter::BeamFile, forks),
             (&self.scene.fixed_spring, StringParameter::FixedFile, false),
         ];
         files.into_iter().filter_map(|(spring, parameter, forks)| {
-            let Shape::Segments(segments) = &spring.as_ref()?.shape else { return None };
-            let fork = segments.fork_position.filter(|_| !forks)?;
             let (name, file) = (parameter.variable().name, self.scene.string(parameter).to_owned());
-            Some(Remark::Joined { name, file, fork })
+            match &spring.as_ref()?.shape {
+                Shape::Segments(segments) => {
+                    segments.fork_position.filter(|_| !forks).map(|fork| Remark::Joined { name, file, fork })
+                }
+                Shape::Modes(modes) => {
+                    let (compliance, held) = (modes.compliance, modes.held());
+                    let usual = compliance <= SOFTEST && held >= HELD * compliance;
+                    (!usual).then_some(Remark::Compliance { name, file, compliance, held })
+                }
+            }
         })
     }
 

@@ -86,6 +86,18 @@ fn gravity_and_contact_force_bend_both_springs() {
     same(preload.indentation, scene.contact.overtravel + 1e-5 + fixed - moving);
 }
 
+#[test]
+fn each_spring_has_its_own_damping() {
+    let mut scene = on_spring(plain(0.0), 0.5, 2.0);
+    let (own, of_fixed) = ((30.0, 1e-6), (500.0, 2e-5));
+    (scene.beam.mass_damping, scene.beam.stiffness_damping) = own;
+    (scene.fixed.mass_damping, scene.fixed.stiffness_damping) = of_fixed;
+    for (n, mode) in Model::new(&scene, 0.0).unwrap().modes.iter().enumerate() {
+        let (by_mass, by_stiffness) = if mode.fixed == 0.0 { own } else { of_fixed };
+        close(n, mode.damping, by_mass + by_stiffness * mode.omega_squared, 1e-12);
+    }
+}
+
 /// Outputs of both springs are those of their modes, also inside the integrator's steps, and the velocity is the derivative.
 #[test]
 fn the_fixed_contact_moves_as_its_outputs_say() {

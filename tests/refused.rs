@@ -85,6 +85,8 @@ const GROUPS: [Group; 10] = [
         // 64 nm is the indentation of the first at the preload.
         (|scene, _| scene.second.gap = 5e-8, &["second.gap = 5e-8 m", "more than 6.4"]),
         (|scene, inputs| inputs.second_displacement = scene.second.gap, &["second.displacement = 0.0003 m"]),
+        // Into the spring, though not to the first.
+        (|scene, inputs| { scene.contact.overtravel = -1e-4; inputs.second_displacement = 3.5e-4 }, &["second.displacement = 0.00035 m"]),
         // A backstop: the first contact is out of reach.
         (|scene, _| scene.contact.overtravel = -0.01, &[]),
     ]),

@@ -90,6 +90,7 @@ fn errors_are_reported_with_their_line_and_what_is_allowed() {
     #[rustfmt::skip]
     let cases = [
         ("[inputs]\nbase.acceleration = inf\n", "line 5: base.acceleration = inf m/s2: not allowed, allowed is -1000000000 to 1000000000"),
+        ("[parameters]\nbeam.length = 0.02\n\"beam.length\" = 0.01\n", "line 6: beam.length: given twice, allowed is one value"),
         ("inputs = 3", "line 4: inputs = 3: wrong type, allowed is a table"),
         ("title = 3", "line 4: title = 3: wrong type, allowed is a string"),
         ("communicationStepp = 1\n", "line 4: communicationStepp: no such key, allowed are title, stop, communicationStep, outputs, parameters, inputs; did you mean communicationStep?"),
@@ -179,9 +180,9 @@ fn communication_steps_fill_the_run_and_the_last_ends_with_it() -> Result<(), Sc
     assert_eq!(steps("1", "0.5")?, [(0.0, 0.5), (0.5, 0.5)]);
     assert_eq!(steps("1.25", "0.5")?, [(0.0, 0.5), (0.5, 0.5), (1.0, 0.25)]);
     assert_eq!(steps("0.5", "2")?, [(0.0, 0.5)]);
-    // 0.3 / 0.1 is less than 3 by rounding, 0.7 / 0.1 more than 7 by hair.
+    // 0.3 / 0.1 is less than 3 by rounding, 0.07 / 0.01 more than 7 by a hair.
     assert_eq!(steps("0.3", "0.1")?.len(), 3);
-    assert_eq!(steps("0.7", "0.1")?.len(), 7);
+    assert_eq!(steps("0.07", "0.01")?.len(), 7);
     Ok(())
 }
 

@@ -26,6 +26,11 @@ def test_a_sine_given_at_the_communication_points() -> None:
     compare("FMPy", fmpy.__version__, "run", result["contact.force"].tolist())
 
 
+def test_a_force_that_is_no_number_is_not_passed() -> None:
+    with pytest.raises(AssertionError):
+        compare("FMPy", fmpy.__version__, "run", [0.0, math.nan], expected=[0.0, 0.0])
+
+
 def test_the_published_run_by_a_choice_that_is_a_number() -> None:
     times = [n * STEP for n in range(2001)]
     expected = read_table(FOLDER / "scenes" / "paper-1khz.csv")["contact.force"].tolist()

@@ -100,9 +100,10 @@ class Relay:
         )
         touches = rows["contact.lastClosing"]
         touch, largest = float(touches[touches >= 0][0]), float(rows["step.maximumForce"].max())
-        # The gap before the first touch is an interruption too, and so is the one after the last separation.
-        bounces = int(count) - 1
-        times = (closing - touch, interrupted - touch) if bounces else (0.0, 0.0)
+        # The gap before the first touch, if it lasts, is an interruption too, and so is the last separation.
+        before = touch >= self.minimum
+        bounces = int(count) - before
+        times = (closing - touch, interrupted - before * touch) if bounces else (0.0, 0.0)
         again = int(broken - count) - 1
         outcome = {
             SPEED: speed, DAMPING: damping, TOUCHED: touch, BOUNCES: bounces, TIME: times[0], OPEN: times[1],

@@ -1,8 +1,10 @@
 """Command line of the examples, and their pictures. Copy it along with an example that imports it."""
 
 import argparse
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import TracebackType
 
 import matplotlib as mpl
 
@@ -11,7 +13,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from relay_contact import fmu_path
+from relay_contact import RelayContactError, fmu_path
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -39,11 +41,20 @@ def parser(description: str | None, quick: str = "", takes: str = "", **bounded:
 
 def read_arguments(line: argparse.ArgumentParser) -> argparse.Namespace:
     """Read the command line, see that the component is there, and make the folder for what is written."""
+    sys.excepthook = told
     given = line.parse_args()
     if not given.fmu.is_file():
         raise SystemExit(f"{given.fmu} is missing: build it with `cargo xtask fmu`")
     given.out.mkdir(parents=True, exist_ok=True)
     return given
+
+
+def told(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Say in a line what is wrong with a value or a file."""
+    if isinstance(error, RelayContactError | OSError):
+        print(error, file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)
 
 
 def within(low: float, high: float, unit: str) -> Callable[[str], float]:

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
+from closing_bounce import Relay as Switched
 from own_spring_elements import CUBE, Drawing, Elements, missing, segments
 from reference import Reference
 from relay_contact import Array, Component, Scene, Values, fmu_path, read_table
@@ -244,6 +245,15 @@ def test_the_bounce_of_a_closing_contact_is_that_of_a_second_solution(run: Run, 
             assert (row["bounces on make"] > 0) == (stop > 1), row
 
 
+def test_a_gap_too_short_for_an_interruption_leaves_the_bounces() -> None:
+    relays = [Switched(Component(FMU), gap, 200e-6, 100e-6) for gap in (20e-6, 60e-6)]
+    short, long = (relay.run(0.4, 1e-7)[0] for relay in relays)
+    assert short["first touch [s]"] < 100e-6 < long["first touch [s]"]
+    for name in ("bounces on make", "bounce time [s]", "open while bouncing [s]"):
+        assert short[name] == pytest.approx(long[name], rel=1e-3)
+        assert short[name] > 0
+
+
 def test_frequencies_and_hysteresis_with_friction_are_those_of_a_second_solution(run: Run, tmp_path: Path) -> None:
     said = run("friction")
     assert "  without friction: 5.08 cN at 1250 Hz" in said
@@ -320,6 +330,14 @@ def test_modes_in_the_component_are_the_whole_mesh(run: Run, tmp_path: Path) -> 
         assert modes == pytest.approx(whole, rel=5e-3 if "opening" in name else 2e-4), name
         # A plate bends less by nu^2, 9 %; hole and rivet, half as much in frequency.
         assert parts == pytest.approx(whole, rel=0.05), name
+
+
+def test_what_cannot_be_used_is_said_in_a_line(tmp_path: Path) -> None:
+    for option, value in (("--fmu", __file__), ("--out", __file__)):
+        result = ran(tmp_path, "paper_1khz", option, value)
+        assert result.returncode == 1
+        assert len(result.stderr.splitlines()) == 1
+        assert value in result.stderr
 
 
 def test_missing_programs_are_named(tmp_path: Path) -> None:

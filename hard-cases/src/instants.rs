@@ -8,7 +8,7 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 
-use crate::case::{Check, cases};
+use crate::case::{Check, cases, worst};
 use testing::rig::{Rig, compose, oscillator, stop};
 use testing::scenes::{largest_difference, shaken};
 
@@ -57,7 +57,7 @@ fn difference(found: &[f64], expected: &[f64]) -> f64 {
 }
 
 fn same_instants(differences: impl IntoIterator<Item = f64>) -> Vec<Check> {
-    let difference = differences.into_iter().fold(0.0, f64::max);
+    let difference = differences.into_iter().fold(0.0, worst);
     let property = "the same openings and closings at the same times";
     vec![Check::instants(property, difference)]
 }

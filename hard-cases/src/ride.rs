@@ -9,6 +9,7 @@ use relay_contact::scene::Scene;
 
 use crate::case::{Check, closest, worst};
 use testing::rig::Rig;
+use testing::scenes::largest_difference;
 
 /// Tip displacement per impulse of the auxiliary mode that measures the impulse of the contact force; its mass is so
 /// large that it hardly moves.
@@ -211,8 +212,7 @@ impl Outcome {
 
     /// The forces agree to the tolerance, relative to a force (N).
     fn agrees(&self, other: &Self, scale: f64) -> Check {
-        let pairs = self.forces.iter().zip(&other.forces);
-        let difference = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let difference = largest_difference(&self.forces, &other.forces);
         let property = "the force is independent of the communication step";
         Check::two_runs(property, difference, self.tolerance() * scale)
     }

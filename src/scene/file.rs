@@ -16,6 +16,7 @@
 //! file = "closing.csv"        # further inputs over time, in the same folder: see `input_table`
 //! ```
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -114,7 +115,7 @@ impl SceneFile {
         };
         file.table.check_overlap(file.stop)?;
         for (role, table) in [(Role::Parameter, parameters), (Role::Input, inputs)] {
-            table.map_or(Ok(()), |table| file.apply(role, "", &table))?;
+            table.map_or(Ok(()), |table| file.apply(role, "", &table, &mut HashSet::new()))?;
         }
         Ok(file)
     }
@@ -170,13 +171,19 @@ impl SceneFile {
         Ok(())
     }
 
-    /// Sets every variable of a table, nested tables as dotted names.
-    fn apply(&mut self, role: Role, prefix: &str, table: &Entry) -> Result<(), SceneError> {
+    /// Sets every variable of a table, nested tables as dotted names; `seen` has those that were set.
+    fn apply(&mut self, role: Role, prefix: &str, table: &Entry, seen: &mut HashSet<String>) -> Result<(), SceneError> {
         let mut named = table.values().map(|(key, value)| (format!("{prefix}{key}"), value));
         named.try_for_each(|(name, value)| match value.table(&name, "a table") {
-            Ok(table) => self.apply(role, &format!("{name}."), &table),
+            Ok(table) => self.apply(role, &format!("{name}."), &table, seen),
             Err(_) if role == Role::Input && name == FILE => Ok(()),
-            Err(_) => value.at(self.set_variable(role, &name, value)),
+            // TOML tells a name with dots from the same in quotes.
+            Err(_) if seen.contains(&name) => value.at(Err(SceneError::GivenTwice { name, allowed: "one value" })),
+            Err(_) => {
+                value.at(self.set_variable(role, &name, value))?;
+                seen.insert(name);
+                Ok(())
+            }
         })
     }
 

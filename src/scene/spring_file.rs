@@ -52,6 +52,7 @@ fn shape(text: &str) -> Result<Shape, SceneError> {
     check_nesting(text)?;
     let document = parsed(text)?;
     let top = Entry::whole(text, &document);
+    top.get("title", |value| value.string("title", "a string"))?;
     if top.value("mode").is_some() || top.value("compliance").is_some() {
         modes(&top).map(Shape::Modes)
     } else {

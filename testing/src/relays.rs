@@ -334,7 +334,7 @@ impl Course {
         for (k, greatest) in reference.greatest.iter().enumerate() {
             scale = scale.max(*greatest);
             let difference = |own: &[f64], other: &[f64]| match (own.get(k), other.get(k)) {
-                (Some(a), Some(b)) => (a - b).abs() / scale,
+                (Some(a), Some(b)) if (a - b).is_finite() => (a - b).abs() / scale,
                 _ => f64::INFINITY,
             };
             error = error.max(difference(&self.force, &reference.force));

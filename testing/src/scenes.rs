@@ -121,7 +121,20 @@ pub fn forces(scene: &Scene, size: f64, count: u32) -> Vec<f64> {
     rows.into_iter().flatten().collect()
 }
 
-/// Largest difference of two time histories at the same times.
+/// Largest difference of two time histories at the same times; not a number where one is, which `f64::max` passes over.
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    assert_eq!(a.len(), b.len(), "values");
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).max_by(f64::total_cmp).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_or_missing_is_no_small_difference() {
+        assert_eq!(largest_difference(&[1.0, 2.0, 5.0], &[1.0, 4.0, 4.5]), 2.0);
+        assert!(largest_difference(&[1.0, f64::NAN, 1.0], &[1.0; 3]).is_nan());
+        assert!(std::panic::catch_unwind(|| largest_difference(&[], &[1.0])).is_err());
+    }
 }

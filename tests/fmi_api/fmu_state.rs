@@ -5,6 +5,8 @@ use relay_contact::variables::PusherKind;
 use testing::instance::{Instance, vr};
 use testing::kinds::{KINDS, Kind};
 
+use super::logging::choose;
+
 /// Shaken with this amplitude (m/s2): the contact opens.
 fn shaken(amplitude: f64) -> Instance {
     let fmu = Instance::new();
@@ -170,6 +172,10 @@ fn after_a_reset_a_relay_drops_and_warns_as_a_new_one() {
     let untouched = fmu.save();
     let (rows, told) = dropped(&fmu);
     assert!(rows[4][10] != rows[11][10] && told.len() == 3, "{told:?}");
+    assert_eq!(fmu.reset(), fmi2OK);
+    // Nothing is left of an experiment either, nor of the messages asked for.
+    assert_eq!(fmu.setup(Some(1e-2), 1.0, Some(2.0)), fmi2OK);
+    assert_eq!(choose(&fmu, fmi2True, &[]), fmi2OK);
     assert_eq!(fmu.reset(), fmi2OK);
     assert_eq!(dropped(&fmu), (rows.clone(), told.clone()));
     // With the current off, of which a state before the start knows nothing.

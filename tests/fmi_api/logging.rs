@@ -9,7 +9,7 @@ use relay_contact::fmi2::*;
 use testing::instance::{Arguments, Instance};
 use testing::log::calling;
 
-fn choose(fmu: &Instance, on: fmi2Boolean, categories: &[&CStr]) -> fmi2Status {
+pub fn choose(fmu: &Instance, on: fmi2Boolean, categories: &[&CStr]) -> fmi2Status {
     let pointers: Vec<_> = categories.iter().map(|category| category.as_ptr()).collect();
     unsafe { fmi2SetDebugLogging(fmu.component, on, pointers.len(), pointers.as_ptr()) }
 }
@@ -25,6 +25,8 @@ fn the_categories_are_those_of_the_description() {
 #[test]
 fn an_unknown_category_is_a_warning_that_changes_nothing() {
     let fmu = Instance::new();
+    // Without categories it leaves what is always told.
+    assert_eq!(choose(&fmu, fmi2False, &[]), fmi2OK);
     let unknown = c"log%s#r103#All";
     assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", unknown]), fmi2OK);
     // As a printf format this reads "log%s##r103##All", and there "##" stands for "#", "#r103#" for a variable.

@@ -117,12 +117,13 @@ def test_an_instance_that_cannot_be_reset_is_freed_and_has_its_row(monkeypatch: 
 
 def test_a_table_made_in_python_is_that_of_run() -> None:
     table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
-    scene = Scene("pressed", 1e-3, 1e-5, 2 * ["contact.force"], {}, table)
+    scene = Scene("pressed", 1e-3, 1e-5, [*2 * ["contact.force"], "base.acceleration"], {}, table)
     pressed = run(scene, component=COMPONENT)["contact.force"]
     assert pressed[-1] > 1.2 * pressed[0]
     frame: Any = pd.DataFrame(table)
     assert np.array_equal(run(scene, inputs=frame, component=COMPONENT)["contact.force"], pressed)
-    assert run_many([scene], component=COMPONENT)["contact.force"][0] == pressed[-1]
+    found = run_many([scene], component=COMPONENT)
+    assert (found["contact.force"][0], found["base.acceleration"][0]) == (pressed[-1], 300.0)
 
 
 def test_values_from_the_columns_of_a_table_are_those_of_python() -> None:

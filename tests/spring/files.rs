@@ -41,6 +41,7 @@ fn errors_in_a_spring_file_have_line_entry_and_range() {
         ("[[segmnt]]\nlength = 0.01\n".to_owned(), "1: segmnt: no such key, allowed are title, segment, mass, contact_position, fork_position, clamp_stiffness; did you mean segment?"),
         (with("[[segment]]\nlength = 1e-3\nwidth_start = 1e-3\nthickness = 1e-4\n"), "5: segment 2: width_end: missing; expected a number"),
         (with("density = \"light\"\n"), "5: segment 1: density = \"light\": wrong type, allowed is a number"),
+        (format!("title = 3\n{SEGMENT}"), "1: title = 3: wrong type, allowed is a string"),
         (with("density = nan\n"), "5: segment 1: density = NaN kg/m3: not allowed, allowed is 1 to 100000"),
         (format!("contact_position = 0.011\n{SEGMENT}"), "1: contact_position = 0.011 m: not allowed, allowed is 0.001 to 0.01"),
         (with("[[mass]]\nposition = 0.02\nmass = 1e-6\n"), "6: mass 1: position = 0.02 m: not allowed, allowed is 1e-6 to 0.01"),

@@ -8,18 +8,8 @@ use goblin::pe::header::COFF_MACHINE_X86_64;
 
 use super::report::Report;
 
-/// Those that every Windows has.
-const LIBRARIES: [&str; 9] = [
-    "kernel32.dll",
-    "ntdll.dll",
-    "msvcrt.dll",
-    "api-ms-win-crt-*",
-    "userenv.dll",
-    "ws2_32.dll",
-    "bcryptprimitives.dll",
-    "api-ms-win-core-synch-*",
-    "advapi32.dll",
-];
+/// Those that every Windows has, of the system and the C library.
+const LIBRARIES: [&str; 4] = ["kernel32.dll", "ntdll.dll", "api-ms-win-core-synch-*", "api-ms-win-crt-*"];
 
 /// The oldest Windows that the Rust standard library runs on: what a library asks for may not be newer.
 const WINDOWS: [u16; 2] = [10, 0];
