@@ -17,6 +17,7 @@ mod scene;
 mod math {
     pub mod legendre;
     pub mod roots;
+    pub mod series;
 }
 
 use std::error::Error;

@@ -2,15 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::math::series::{NEGLIGIBLE, TERMS};
 use crate::math::{legendre, roots};
-
-/// Most terms of a power series: `7^n / n!` is below rounding from there on. Pinned: ÷ 4,
-/// `responses_agree_with_quadrature_in_every_regime`.
-const TERMS: usize = 48;
-
-/// Terms of a power series below this are left out, 1. A thousandth of rounding. Pinned: × 1e10,
-/// `responses_agree_with_quadrature_in_every_regime`.
-const NEGLIGIBLE: f64 = 1e-19;
 
 /// Points of the quadrature for repeated integrals. Exact for all that are large. Pinned: ÷ 5,
 /// `responses_agree_with_quadrature_in_every_regime`.
@@ -21,10 +14,7 @@ const MOST: usize = 9;
 
 /// All that are used.
 pub fn all() -> String {
-    let mut code = format!(
-        "/// Most terms of a power series.\npub const TERMS: usize = {TERMS};\n\
-         /// Terms of one below this are left out, 1.\npub const NEGLIGIBLE: f64 = {NEGLIGIBLE:?};\n"
-    );
+    let mut code = String::new();
     for (name, size, count, by_root) in
         [("SHORT_BY_TIME", "SHORT", 4, false), ("LONG_BY_TIME", "LONG", 8, false), ("LONG_BY_ROOT", "LONG", 8, true)]
     {

@@ -26,7 +26,7 @@ fn read(folder: &Path, module: &str, found: &mut Texts) {
     }
 }
 
-/// The paths in `use crate::...;` and `use super::...;` of a module.
+/// The paths in `use crate::...;`, of whichever visibility, and `use super::...;` of a module.
 fn imported(own: &str, text: &str) -> Vec<String> {
     let parent = own.rsplit_once("::").map_or("", |(parent, _)| parent);
     let paths_from = |start: &str, base: &str| -> Vec<String> {
@@ -38,7 +38,7 @@ fn imported(own: &str, text: &str) -> Vec<String> {
         });
         paths.collect()
     };
-    [paths_from("\nuse crate", ""), paths_from("\nuse super", parent)].concat()
+    [paths_from("use crate", ""), paths_from("\nuse super", parent)].concat()
 }
 
 /// Names after each occurrence of `before`.
@@ -133,7 +133,7 @@ fn a_circle_is_found() {
         circles(&imports(&texts)).into_iter().map(str::to_owned).collect()
     };
     let of_three =
-        [("::a", "\nuse crate::b::{self, x};"), ("::b::c", "\nuse crate::a::x;"), ("::d", "\nuse crate::a;")];
+        [("::a", "\nuse crate::b::{self, x};"), ("::b::c", "\npub use crate::a::x;"), ("::d", "\nuse crate::a;")];
     assert_eq!(found(&[&of_three[..], &[("::b", "\nuse super::b::c;")]].concat()), ["::a", "::b", "::b::c"]);
     assert_eq!(found(&[&of_three[..], &[("::b", "")]].concat()), [""; 0]);
     // A method that stands in a file of its own, which imports its type.

@@ -6,4 +6,5 @@ pub mod legendre;
 pub mod nodal;
 pub mod prediction;
 pub mod roots;
+pub mod series;
 pub mod simd;

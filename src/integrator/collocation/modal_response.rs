@@ -8,11 +8,12 @@
 
 use crate::beam::mode::Mode;
 use crate::integrator::collocation::fading_load::convolved;
-use crate::integrator::collocation::shapes::{MAX_SHAPES, NEGLIGIBLE, Row, Shapes, TERMS, Variable};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, Variable};
 use crate::integrator::collocation::superposition::{Combination, Fading, Fast, Pair, Response};
 use crate::math::elementary::exp;
 use crate::math::free_motion::{FADED, FreeMotion, Roots};
 use crate::math::nodal::{Nodal, add, scaled};
+use crate::math::series::{NEGLIGIBLE, TERMS};
 use crate::math::simd::Arithmetic;
 
 /// Root times step length up to which the power series keeps its digits, 1: its terms grow to about `7^6 / 7!`. Pinned:

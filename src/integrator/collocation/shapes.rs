@@ -3,8 +3,8 @@
 
 use bytemuck::Zeroable;
 
-pub use crate::integrator::collocation::polynomial::{NEGLIGIBLE, TERMS};
 use crate::math::nodal::{LONG, Nodal, add, dot, end};
+use crate::math::series::TERMS;
 use crate::math::simd::Arithmetic;
 
 /// Largest number of load shapes: one for each node, one for the error estimate.
@@ -62,7 +62,7 @@ pub struct Shapes<const S: usize> {
     pub variable: Variable,
     /// `x^n / n!` at the nodes, n = 0, 1, ...
     pub powers: [Nodal<S>; TERMS + 1],
-    /// Root times step length up to which its n-th power over n! is [`NEGLIGIBLE`], n = 1, 2, ...
+    /// Root times step length up to which its n-th power over n! is negligible (`math::series`), n = 1, 2, ...
     pub negligible: [f64; TERMS - 1],
     /// n-fold integrals from the start, n = 1, 2, ...
     pub integrals: [Table<S>; TERMS],

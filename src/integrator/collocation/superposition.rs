@@ -4,8 +4,9 @@
 
 use bytemuck::Zeroable;
 
-use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, TERMS, Table};
+use crate::integrator::collocation::shapes::{MAX_SHAPES, Row, Shapes, Table};
 use crate::math::nodal::{Nodal, add, end};
+use crate::math::series::TERMS;
 use crate::math::simd::Arithmetic;
 
 /// Displacement and velocity, in units of the step length.
