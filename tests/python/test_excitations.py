@@ -380,7 +380,8 @@ def test_of_three_dips_the_middle_one_counts(parts: tuple[float, ...]) -> None:
 
     still = Course(np.zeros(2), np.zeros(2))
     dips: list[Piece] = [Dip(still, 1.0, begin, part) for begin, part in enumerate(parts)]
-    assert middle_dip(CALM, dips)[0] == pytest.approx(1.0, rel=1e-4)
+    test = Random("a", "", READ, ((50.0, 0.01), (1000.0, 0.01)), 3.08, 900.0)
+    assert middle_dip(CALM, test, dips)[0] == pytest.approx(1.0, rel=1e-4)
 
 
 def test_clipping_bounds_what_follows_the_acceleration_and_hardly_what_resonates() -> None:

@@ -16,7 +16,7 @@ from relay_contact import RelayContactWarning, Values, run
 from relay_contact.component import Array, half_sine
 from relay_contact.figures import GRAVITY, three
 from relay_contact.many import side_by_side
-from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, judgement, qualify
+from relay_contact.qualification import FEW, Assessment, Finding, Relay, Standard, courses, judgement, qualify
 from relay_contact.qualification import position as positions
 from relay_contact.qualification.courses import Piece, pieces
 from relay_contact.qualification.distributions import Distribution
@@ -404,14 +404,19 @@ def noise(seed: int, lasting: float, high: float, size: float) -> Record:
     return Record(Path("record.csv"), "a", time, noise / noise.std() * size)
 
 
-@pytest.mark.parametrize("length", [15.7e-3, 16.5e-3])
-def test_the_dip_of_a_record_that_fails_first_need_not_be_the_largest(length: float) -> None:
-    """A rough contact with 2 % of critical damping: by its three largest dips its margin was up to 28 % too high."""
-    values: Values = {
+def damped_weakly(length: float) -> Values:
+    """Return a rough contact with 2 % of critical damping, on a spring of this length."""
+    return {
         "beam.length": length, "beam.width": 4e-3, "beam.thickness": 2e-4, "tip.mass": 1e-5, "contact.overtravel": 2e-4,
         "beam.stiffnessDamping": 4e-6, "contact.damping": 1e-6, "effects.contactLaw": "Rough", "contact.stiffness": 2e4,
         "contact.stiffnessForce": 0.1, "contact.stiffnessExponent": 0.7,
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("length", [15.7e-3, 16.5e-3])
+def test_the_dip_of_a_record_that_fails_first_need_not_be_the_largest(length: float) -> None:
+    """By its three largest dips the margin of a rough contact was up to 28 % too high."""
+    values = damped_weakly(length)
     test = History("record", "", READ, record=noise(3, 0.5, 3000.0, 200.0), both=False, digest="")
 
     def level(changed: Values) -> float:
@@ -427,6 +432,24 @@ def test_the_dip_of_a_record_that_fails_first_need_not_be_the_largest(length: fl
     assert found.margin == pytest.approx(levels[1], rel=1e-6)
     kept = test.record.kept(position.specimen.response.natural)
     assert (found.low / kept, found.high) == pytest.approx((min(levels), max(levels)), rel=0.03)
+
+
+@pytest.mark.parametrize("changed", [{}, {"effects.friction": "Coulomb", "friction.coefficient": 0.6}])
+def test_the_dips_of_noise_that_fail_first_need_not_be_the_largest(changed: Values) -> None:
+    """By its three largest dips alone the margin was up to a third too high: at its level up to 21 others failed."""
+    test = Random("random", "", READ, ((200.0, 0.1), (3000.0, 0.1)), 16.7, 60.0)
+    position = placed(
+        described({**damped_weakly(15.7e-3), **changed}, {"contact.overtravel": Distribution(part=0.05)}), test
+    )
+    part, _, piece = position.middle[test.unit]
+    level, specimen = part * piece.guess, position.specimen
+    dips = pieces(specimen, courses.noise(test.unit)[1], 1.0, level)
+    begins = [[each.begin for each in dips if each.follow(specimen, by * level)[0]] for by in (0.999, 1.001)]
+    # That of no or one dip before, of another with it.
+    assert [bool(np.ptp(each or [0.0]) > specimen.response.settling) for each in begins] == [False, True]
+    # Draws are related to the dip that fails.
+    margin = judgement.judged(position, test, FEW).margin
+    assert np.log(margin.margin / margin.linear) == pytest.approx(position.turn(test, 0, 0.0), abs=1e-3)
 
 
 def test_draws_of_a_test_do_not_depend_on_others_beside_it() -> None:

@@ -1,6 +1,6 @@
 """Courses over time as the component runs them: pulses, records and noise, whole or around their largest dips."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from threading import Lock
 from typing import Any
@@ -21,7 +21,7 @@ from relay_contact.qualification.excitation import (  # fmt: skip
     rounded,
     straight,
 )
-from relay_contact.qualification.level import Lengths, Tried, threshold
+from relay_contact.qualification.level import RESOLUTION, Lengths, Tried, threshold
 from relay_contact.qualification.response import FLIES, Response, fast, stays
 from relay_contact.qualification.trials import APART, Specimen
 
@@ -155,15 +155,15 @@ def pieces(specimen: Specimen, course: Course, sign: float, failing: float = 0.0
     return [piece for _, piece in sorted(found, key=lambda each: -each[0])[:most]]
 
 
-def further(specimen: Specimen, test: Transient, level: float, linear: float) -> list[tuple[str, Piece]]:
+def further(specimen: Specimen, test: Transient | Random, level: float, linear: float) -> list[tuple[str, Piece]]:
     """Return what is around all dips that fail at a level by linear theory, by direction, the largest first.
 
     Where that is off, others than its largest may fail first: none where it is not, or far off, or of a pulse.
     """
     if isinstance(test, Shock) or not APART < level / linear - 1 < 1 / FLIES:
         return []
-    ways = test.directions.items()
-    found = [(way, each) for way, sign in ways for each in pieces(specimen, test.course(), sign, level)]
+    course, ways = (noise(test)[1], {"": 1.0}) if isinstance(test, Random) else (test.course(), test.directions)
+    found = [(way, each) for way, sign in ways.items() for each in pieces(specimen, course, sign, level)]
     return sorted(found, key=lambda each: each[1].guess)[:MOST_DIPS]
 
 
@@ -225,10 +225,11 @@ def record(
     return found[0], found[-1]
 
 
-def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str], Piece]:
+def middle_dip(specimen: Specimen, test: Random, dips: list[Piece]) -> tuple[float, list[str], Piece]:
     """Return at which part of the level of linear theory the contacts fail, and which, in the middle of three dips.
 
-    That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest.
+    That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest. Where linear
+    theory is off, others may fail first: then the second to fail, in place of the second largest.
     """
 
     def sought(piece: Piece, part: float) -> tuple[float, list[str], Piece]:
@@ -239,12 +240,24 @@ def middle_dip(specimen: Specimen, dips: list[Piece]) -> tuple[float, list[str],
         return bool(piece.tried(specimen, 1.0)(piece.guess * part)[0])
 
     one, other, third = dips
-    first = sought(one, 1.0)
-    weaker = fails(other, first[0])
-    if fails(third, first[0]) != weaker:
-        return first
-    second = sought(other, first[0])
-    return second if fails(third, second[0]) == weaker else sought(third, second[0])
+    found = sought(one, 1.0)
+    weaker = fails(other, found[0])
+    if fails(third, found[0]) == weaker:
+        second = sought(other, found[0])
+        found = second if fails(third, second[0]) == weaker else sought(third, second[0])
+    least: list[tuple[float, list[str], Piece]] = []
+    apart = 2 * max(specimen.response.settling, BEFORE)
+    for _, each in further(specimen, test, found[0] * other.guess, other.guess):
+        if len(least) < 2 or fails(each, least[-1][0] / each.guess * (1 - RESOLUTION)):
+            part, failed, _ = sought(each, 1.0)
+            # Of those that are the same failure the first.
+            same = [known for known in least if abs(known[2].begin - each.begin) < apart]
+            first = min([*same, (part * each.guess, failed, each)], key=lambda known: known[0])
+            least = sorted([first, *(known for known in least if known not in same)], key=lambda known: known[0])[:2]
+    if len(least) < 2:
+        return found
+    level, failed, piece = least[-1]
+    return level / other.guess, failed, replace(piece, guess=other.guess)
 
 
 def noise_dips(specimen: Specimen, test: Random) -> tuple[list[Piece], float]:

@@ -295,7 +295,7 @@ class Position:
     @cached_property
     def middle(self) -> dict[Random, tuple[float, list[str], courses.Piece]]:
         """Of each noise at its unit: at which part of linear theory it fails, what fails, and the dip."""
-        return {test: courses.middle_dip(self.specimen, dips) for test, (dips, _) in self.noises.items()}
+        return {test: courses.middle_dip(self.specimen, test, dips) for test, (dips, _) in self.noises.items()}
 
     def turn(self, test: Test, number: int, expected: float) -> float:
         """Return what `sought` does: of noises that differ in level alone once for all."""
@@ -329,7 +329,9 @@ class Position:
         else:
             if isinstance(test, Random):
                 piece, sign = self.middle[test.unit][2], 1.0
-                linear = response.course(piece.course, sign, lasting) / self.noises[test.unit][1]
+                # Another dip may stand for it, which linear theory expects to fail later.
+                part = piece.guess / self.specimen.response.course(piece.course, sign, lasting)
+                linear = part * response.course(piece.course, sign, lasting) / self.noises[test.unit][1]
             else:
                 assert isinstance(test, Transient)
                 ways = [(sign, each) for way, sign in test.directions.items() for each in self.pieces[test.name][way]]
