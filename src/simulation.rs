@@ -149,11 +149,10 @@ impl Simulation {
         events.replace_after(f64::NEG_INFINITY, motion.events_ahead());
     }
 
-    /// Openings and closings within the last communication step, at most a thousand, and the number of others. None
-    /// after a state was set.
-    pub fn events(&self) -> (impl Iterator<Item = &Event>, u64) {
-        let events = &self.workspace.events;
-        (events.until(self.motion.time), events.left_out)
+    /// Openings and closings within the last communication step, at most a thousand, and the instant (s) of the first
+    /// that was one too many. None after a state was set.
+    pub fn events(&self) -> (impl Iterator<Item = &Event>, Option<f64>) {
+        self.workspace.events.until(self.motion.time)
     }
 
     /// The time reached, s.

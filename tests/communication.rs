@@ -298,7 +298,7 @@ fn events(size: u32, inputs: impl Fn(f64) -> Inputs) -> Vec<Event> {
         let time = 2.5e-7 * f64::from(k * size);
         simulation.step(&inputs(time), time, 2.5e-7 * f64::from(size)).unwrap();
         let (list, left_out) = simulation.events();
-        assert_eq!(left_out, 0);
+        assert_eq!(left_out, None);
         events.extend(list);
         if k % 11 == 0 {
             let course = *simulation.motion();

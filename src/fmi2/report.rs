@@ -44,8 +44,8 @@ pub(super) fn step(logger: &Logger, simulation: &Simulation, before: [u64; 3]) {
         let text = format!("fmi2DoStep: the {which} {verb} at {} s", number(event.time));
         logger.log(Category::Events, fmi2OK, &text);
     }
-    if left_out > 0 {
-        let text = format!("fmi2DoStep: {left_out} more openings and closings in this step");
+    if let Some(instant) = left_out {
+        let text = format!("fmi2DoStep: openings and closings in this step from {} s on are not told", number(instant));
         logger.log(Category::Events, fmi2OK, &text);
     }
     let ([steps, rejected, iterations], time) = (effort(simulation), number(simulation.time()));

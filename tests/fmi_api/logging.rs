@@ -29,6 +29,10 @@ fn an_unknown_category_is_a_warning_that_changes_nothing() {
     assert_eq!(choose(&fmu, fmi2False, &[]), fmi2OK);
     let unknown = c"log%s#r103#All";
     assert_eq!(choose(&fmu, fmi2False, &[c"logStatusError", unknown]), fmi2OK);
+    // What was chosen to be silent stays so.
+    assert_eq!(choose(&fmu, fmi2False, &[c"logStatusWarning"]), fmi2OK);
+    assert_eq!(choose(&fmu, fmi2False, &[]), fmi2OK);
+    assert_eq!(choose(&fmu, fmi2False, &[unknown]), fmi2OK);
     // As a printf format this reads "log%s##r103##All", and there "##" stands for "#", "#r103#" for a variable.
     fmu.expect_message(
         fmi2Warning,
@@ -78,8 +82,9 @@ fn openings_and_closings_are_logged_with_their_instants() {
 fn debug_messages_are_off_unless_asked_for() {
     let [both, none] = [[true, true], [false, false]];
     let (events, solver) = (c"logEvents", c"logSolver");
-    let cases: [(bool, &[Choice], [bool; 2]); 7] = [
+    let cases: [(bool, &[Choice], [bool; 2]); 8] = [
         (false, &[], none),
+        (false, &[(fmi2False, &[events])], none),
         (true, &[], [true, false]),
         (false, &[(fmi2True, &[])], both),
         (true, &[(fmi2False, &[])], none),
@@ -91,6 +96,29 @@ fn debug_messages_are_off_unless_asked_for() {
         let heard = debug_messages(on, choices).map(|messages| !messages.is_empty());
         assert_eq!(heard, expected, "{on} {choices:?}");
     }
+}
+
+#[test]
+fn it_is_told_from_when_on_events_are_too_many_to_be_told() {
+    let told = |size: f64, count: u32| {
+        let fmu = Instance::with(&Arguments { logging_on: true, ..Arguments::default() });
+        fmu.shake(400.0);
+        fmu.initialize();
+        for k in 0..count {
+            assert_eq!(fmu.step(f64::from(k) * size, size), fmi2OK);
+        }
+        fmu.messages().into_iter().map(|message| message.text).collect::<Vec<_>>()
+    };
+    let instant = |text: &str| text.split(' ').rev().nth(1).and_then(|time| time.parse::<f64>().ok()).unwrap();
+    let (all, some) = (told(1e-3, 550), told(0.55, 1));
+    assert!(all.len() > 1024 && some.len() == 1024 + 1, "{} {}", all.len(), some.len());
+    let left_out = some[1024].split(' ').find_map(|word| word.parse::<f64>().ok()).unwrap();
+    assert!((left_out - instant(&all[1024])).abs() < 1e-9, "{} {}", some[1024], all[1024]);
+    // As many as are kept, and the next is ahead of the end of the step.
+    let just = told(instant(&all[1023]) + 1e-9, 1);
+    assert_eq!(just.len(), 1024);
+    // Those of the next step begin anew.
+    assert_eq!(told(0.55, 2).len(), 2 * (1024 + 1));
 }
 
 /// Warnings of a shaken specimen with this damping of the spring (s) and number of modes over 20 ms.

@@ -19,14 +19,14 @@ pub struct Event {
 #[derive(Clone, Debug)]
 pub struct Events {
     list: Vec<Event>,
-    /// Number of events not kept.
-    pub left_out: u64,
+    /// Instant of the first that was not kept, s.
+    left_out: Option<f64>,
 }
 
 impl Events {
     /// An empty log.
     pub(crate) fn new() -> Self {
-        Self { list: Vec::with_capacity(EVENTS_KEPT), left_out: 0 }
+        Self { list: Vec::with_capacity(EVENTS_KEPT), left_out: None }
     }
 
     /// Adds an event.
@@ -34,21 +34,19 @@ impl Events {
         if self.list.len() < EVENTS_KEPT {
             self.list.push(event);
         } else {
-            self.left_out += 1;
+            self.left_out = self.left_out.or(Some(event.time));
         }
     }
 
     /// Removes events up to an instant (s), at which a communication step begins.
     pub(crate) fn forget_until(&mut self, time: f64) {
-        if self.list.is_empty() {
-            return;
-        }
-        self.left_out = 0;
+        self.left_out = self.left_out.filter(|instant| *instant > time);
         self.list.retain(|event| event.time > time);
     }
 
     /// Removes events after an instant (s), from which integration restarts.
     pub(crate) fn forget_after(&mut self, time: f64) {
+        self.left_out = self.left_out.filter(|instant| *instant <= time);
         self.list.retain(|event| event.time <= time);
     }
 
@@ -58,8 +56,9 @@ impl Events {
         others.for_each(|event| self.record(event));
     }
 
-    /// Events up to an instant (s).
-    pub fn until(&self, time: f64) -> impl Iterator<Item = &Event> {
-        self.list.iter().filter(move |event| event.time <= time)
+    /// Events up to an instant (s), and when the first up to there was that is not among them, s.
+    pub fn until(&self, time: f64) -> (impl Iterator<Item = &Event>, Option<f64>) {
+        let told = self.list.iter().filter(move |event| event.time <= time);
+        (told, self.left_out.filter(|instant| *instant <= time))
     }
 }
