@@ -447,6 +447,9 @@ def test_the_dips_of_noise_that_fail_first_need_not_be_the_largest(changed: Valu
     begins = [[each.begin for each in dips if each.follow(specimen, by * level)[0]] for by in (0.999, 1.001)]
     # That of no or one dip before, of another with it.
     assert [bool(np.ptp(each or [0.0]) > specimen.response.settling) for each in begins] == [False, True]
+    # Others are not tried where another part of the relay fails long before.
+    (three_dips, _), nearest = position.noises[test.unit], 1.01 * part
+    assert courses.middle_dip(specimen, test.unit, three_dips, nearest)[0] > nearest
     # Draws are related to the dip that fails.
     margin = judgement.judged(position, test, FEW).margin
     assert np.log(margin.margin / margin.linear) == pytest.approx(position.turn(test, 0, 0.0), abs=1e-3)

@@ -225,11 +225,14 @@ def record(
     return found[0], found[-1]
 
 
-def middle_dip(specimen: Specimen, test: Random, dips: list[Piece]) -> tuple[float, list[str], Piece]:
+def middle_dip(
+    specimen: Specimen, test: Random, dips: list[Piece], enough: float = np.inf
+) -> tuple[float, list[str], Piece]:
     """Return at which part of the level of linear theory the contacts fail, and which, in the middle of three dips.
 
     That is, of the largest dips of a record of noise, the one whose part is neither least nor greatest. Where linear
-    theory is off, others may fail first: then the second to fail, in place of the second largest.
+    theory is off, others may fail first: then the second to fail, in place of the second largest. None of them is
+    tried where the first three fail from `enough` of linear theory on.
     """
 
     def sought(piece: Piece, part: float) -> tuple[float, list[str], Piece]:
@@ -247,7 +250,8 @@ def middle_dip(specimen: Specimen, test: Random, dips: list[Piece]) -> tuple[flo
         found = second if fails(third, second[0]) == weaker else sought(third, second[0])
     least: list[tuple[float, list[str], Piece]] = []
     apart = 2 * max(specimen.response.settling, BEFORE)
-    for _, each in further(specimen, test, found[0] * other.guess, other.guess):
+    others = further(specimen, test, found[0] * other.guess, other.guess) if found[0] < enough else []
+    for _, each in others:
         if len(least) < 2 or fails(each, least[-1][0] / each.guess * (1 - RESOLUTION)):
             part, failed, _ = sought(each, 1.0)
             # Of those that are the same failure the first.

@@ -44,6 +44,11 @@ LOWEST = 1e-300
 """Margin in place of that of a draw that fails at rest, whose logarithm would be endless."""
 FAR = -9e-3
 """Overtravel (m) of a contact that is out of reach."""
+OUTDONE = 4.0
+"""Times the least level of all parts, by linear theory, from which on a part does not matter beside others.
+
+That of the least may be twice as high, and another matters up to `judgement.BEYOND` of it.
+"""
 STILL = 1e-9
 """Part of a margin that rounding changes at most."""
 NEAR = 0.05
@@ -295,7 +300,13 @@ class Position:
     @cached_property
     def middle(self) -> dict[Random, tuple[float, list[str], courses.Piece]]:
         """Of each noise at its unit: at which part of linear theory it fails, what fails, and the dip."""
-        return {test: courses.middle_dip(self.specimen, test, dips) for test, (dips, _) in self.noises.items()}
+
+        def enough(test: Random) -> float:
+            own, *others = (each.linear(each.specimen.response, test) for each in (self, *self.parts))
+            return OUTDONE * min(others) / max(own, 1e-12)
+
+        return {test: courses.middle_dip(self.specimen, test, dips, enough(test))
+                for test, (dips, _) in self.noises.items()}  # fmt: skip
 
     def turn(self, test: Test, number: int, expected: float) -> float:
         """Return what `sought` does: of noises that differ in level alone once for all."""
