@@ -10,7 +10,7 @@ use relay_contact::variables::{
 };
 use testing::scenes::{course, force_scale, forces, largest_difference, shaken, tip_stiffness};
 use testing::springs::{self, modes_of, segment, spring_file};
-use testing::{close, near};
+use testing::{close, near, worst};
 
 /// The scene with a parallel contact, equal to the first.
 fn pair(mut scene: Scene) -> Scene {
@@ -84,7 +84,7 @@ fn two_different_contacts_on_one_tip_may_change_places() {
         changed.solver.modes = modes;
         let (found, last) = course(&changed, 1e-5, 300, BOTH);
         let missed = expected.iter().zip(found).map(|(expected, found)| (expected[0] - found[1]).abs() / greatest);
-        let (missed, told) = (missed.fold(0.0, f64::max), last.real(RealOutput::SolverForceError));
+        let (missed, told) = (missed.fold(0.0, worst), last.real(RealOutput::SolverForceError));
         assert!(missed > 1e-4 && told > missed, "{modes}: {missed} {told}");
     }
 }

@@ -137,13 +137,10 @@ pub(crate) fn closest(simulations: impl IntoIterator<Item = Result<Vec<Check>>>)
     Ok(closest)
 }
 
-/// The larger deviation; NaN is kept.
-pub(crate) fn worst(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b > a { b } else { a }
-}
-
 #[cfg(test)]
 mod tests {
+    use testing::worst;
+
     use super::*;
 
     #[test]

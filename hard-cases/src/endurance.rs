@@ -6,9 +6,10 @@ use relay_contact::reference::Model;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 
-use crate::case::{Check, cases, closest, worst};
+use crate::case::{Check, cases, closest};
 use testing::rig::Rig;
 use testing::scenes::{shaken, undamped};
+use testing::worst;
 
 cases! { CASES:
     "1000 contact cycles and more, no damping at all, 1 ms communication steps",

@@ -6,8 +6,9 @@ use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::RealOutput;
 use testing::scenes::accelerated;
+use testing::worst;
 
-use crate::case::{Check, worst};
+use crate::case::Check;
 
 /// Communication step, s.
 const STEP: f64 = 1e-6;

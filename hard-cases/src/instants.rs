@@ -8,9 +8,10 @@ use relay_contact::reference::Model;
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 
-use crate::case::{Check, cases, worst};
+use crate::case::{Check, cases};
 use testing::rig::{Rig, compose, oscillator, stop};
 use testing::scenes::{largest_difference, shaken};
+use testing::worst;
 
 cases! { CASES:
     "Chatter at 41 g in communication steps of 1 µs to 10 ms",

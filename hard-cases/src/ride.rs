@@ -7,9 +7,10 @@ use relay_contact::inputs::Inputs;
 use relay_contact::reference::{MAX_MODES, Mode, Model};
 use relay_contact::scene::Scene;
 
-use crate::case::{Check, closest, worst};
+use crate::case::{Check, closest};
 use testing::rig::Rig;
 use testing::scenes::largest_difference;
+use testing::worst;
 
 /// Tip displacement per impulse of the auxiliary mode that measures the impulse of the contact force; its mass is so
 /// large that it hardly moves.

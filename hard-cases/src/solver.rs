@@ -6,10 +6,11 @@ use relay_contact::scene::{Scene, Solver};
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
 
-use crate::case::{Check, cases, closest, worst};
+use crate::case::{Check, cases, closest};
 use crate::ride::{Ride, Segment, changed};
 use crate::spring::shaken;
 use testing::scenes::shaken as excited;
+use testing::worst;
 
 cases! { CASES:
     "Tolerance 0.1", "the coarsest allowed"

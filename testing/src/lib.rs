@@ -29,6 +29,11 @@ pub mod rig;
 pub mod scenes;
 pub mod springs;
 
+/// The larger deviation; what is not a number is kept, which `f64::max` passes over.
+pub fn worst(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
+}
+
 /// Asserts that a number is another one to what is allowed.
 #[track_caller]
 pub fn near(of: impl Display, found: f64, expected: f64, allowed: f64) {

@@ -11,9 +11,9 @@ use relay_contact::reference::{Model, Space};
 use relay_contact::scene::Scene;
 use relay_contact::simulation::Simulation;
 use relay_contact::variables::{ContactLawKind, IntegerOutput, RealOutput};
-use testing::near;
 use testing::rig::Rig;
 use testing::scenes::{accelerated, shaken};
+use testing::{near, worst};
 
 const FREQUENCY: f64 = 1000.0;
 const AMPLITUDE: f64 = 98.0;
@@ -198,7 +198,7 @@ fn error_against_the_exponential(scene: &Scene) -> (f64, f64) {
     let step = matrix.exp();
 
     let mut motion = DVector::zeros(2 * n + 6);
-    let (mut support, mut worst, mut largest) = (0.0, 0.0_f64, model.force_scale);
+    let (mut support, mut off, mut largest) = (0.0, 0.0_f64, model.force_scale);
     for count in 0..40 {
         let start = rig.state.time;
         let inputs = Inputs {
@@ -228,10 +228,10 @@ fn error_against_the_exponential(scene: &Scene) -> (f64, f64) {
             force -= parts[0] + parts[1];
             largest = largest.max(parts[0].abs() + parts[1].abs());
         }
-        worst = worst.max((rig.state.contact().force - model.preload.force - force).abs());
+        off = worst(off, (rig.state.contact().force - model.preload.force - force).abs());
     }
     assert_eq!(rig.state.steps, 40);
-    (worst / model.force_scale, worst / (f64::EPSILON * largest))
+    (off / model.force_scale, off / (f64::EPSILON * largest))
 }
 
 #[test]
@@ -284,18 +284,18 @@ fn one_long_step_is_many_short_ones() {
             let mut one = Rig::new(Model::new(&scene, 0.0).unwrap());
             scene.solver.maximum_step = 1.001 * size / f64::from(parts);
             let mut many = Rig::new(Model::new(&scene, 0.0).unwrap());
-            let mut worst = 0.0_f64;
+            let mut off = 0.0;
             for count in 0..5 {
                 let inputs = accelerated(20.0 * f64::from(count), 0.0);
                 one.run_to(&inputs, f64::from(count + 1) * size).unwrap();
                 for part in 1..=parts {
                     many.run_to(&inputs, (f64::from(count) + f64::from(part) / f64::from(parts)) * size).unwrap();
                 }
-                worst =
-                    worst.max((one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale);
+                off =
+                    worst(off, (one.state.contact().force - many.state.contact().force).abs() / one.model.force_scale);
             }
             assert_eq!((one.state.steps, many.state.steps), (5, 500), "{damping:?}, {modes} modes");
-            assert!(worst < 1e-12, "{damping:?}, {modes} modes: {worst:e}");
+            assert!(off < 1e-12, "{damping:?}, {modes} modes: {off:e}");
         }
     }
 }
