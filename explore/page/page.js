@@ -162,7 +162,7 @@ function add(control) {
       + `<span class="unit">${control.unit}</span><input type="range" aria-label="${control.label}, slider" min="0" max="${positions(control)}" step="1">`;
     const [, box, , slider] = row.children;
     box.title = `${control.min} to ${control.max} ${control.unit}`;
-    box.onchange = () => show(); // what is not allowed gives way to the value that is simulated
+    box.onchange = () => fill(); // what is not allowed gives way to the value that is simulated
     box.oninput = () => box.value !== "" && box.validity.valid && change(control, tidy(box.valueAsNumber / control.per), box);
     slider.oninput = () => change(control, tidy(fromSlider(control, slider.valueAsNumber / positions(control)) / control.per), slider);
   }
@@ -184,8 +184,7 @@ function change(control, value, from) {
   if (control.group !== "Excitation") search();
 }
 
-let named = 0;
-function show(from) {
+function fill(from) {
   for (const [control, row] of rows) {
     row.hidden = !used(control, values);
     if (control.choices) {
@@ -199,6 +198,11 @@ function show(from) {
     if (slider !== from) slider.value = positions(control) * (log ? Math.log(shown / min) / Math.log(max / min) : (shown - min) / (max - min));
     slider.setAttribute("aria-valuetext", `${Number(shown.toPrecision(6))} ${control.unit}`);
   }
+}
+
+let named = 0;
+function show(from) {
+  fill(from);
   const scene = sceneOf(values);
   element("scene").textContent = scene;
   const hash = hashOf(values);

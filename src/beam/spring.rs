@@ -85,8 +85,7 @@ impl Spring {
             return 0.0;
         }
         match scene.effects.axial_force {
-            AxialForceKind::None => 0.0,
-            AxialForceKind::Prescribed => scene.beam.axial_force,
+            AxialForceKind::None | AxialForceKind::Prescribed => prescribed(scene),
             AxialForceKind::FromPreload | AxialForceKind::FromDeflection => {
                 axial_force_from_deflection(&self.statics.section, y)
             }
