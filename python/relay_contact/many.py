@@ -49,12 +49,12 @@ def side_by_side(
 
     Work within work shares them. Warnings of the component are kept in the order of the items. `tell` is called by
     this thread for each item, within a twentieth of a second after it is done. An error ends it, once what runs is
-    done.
+    done: that of the first item, in their order, however fast others fail.
     """
     workers = checked(workers)
     used = max(1, min(workers, len(items)))
     kept: list[dict[str, str]] = [{} for _ in items]
-    left, found = deque(enumerate(items)), dict[int, Found]()
+    left, found, failed = deque(enumerate(items)), dict[int, Found](), dict[int, Exception]()
     ended = Event()
 
     def own(index: int, item: Item) -> None:
@@ -69,7 +69,11 @@ def side_by_side(
                 index, item = left.popleft()
             except IndexError:
                 return
-            context.copy().run(own, index, item)
+            try:
+                context.copy().run(own, index, item)
+            except Exception as error:
+                failed[index] = error
+                ended.set()
 
     # This thread rests meanwhile: woken after each item it would take the lock of the interpreter from the others.
     with ThreadPoolExecutor(used) as pool:
@@ -86,6 +90,8 @@ def side_by_side(
                 told = finished
         finally:
             ended.set()
+    if failed:
+        raise failed[min(failed)]
     if (whole := KEPT.get()) is not None:
         for kind, message in (pair for each in kept for pair in each.items()):
             whole.setdefault(kind, message)

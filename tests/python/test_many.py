@@ -115,6 +115,21 @@ def test_an_instance_that_cannot_be_reset_is_freed_and_has_its_row(monkeypatch: 
     assert not component.idle
 
 
+def test_of_several_failures_the_first_in_order_is_told() -> None:
+    second = threading.Event()
+
+    def work(item: int) -> None:
+        if item == 0:
+            assert second.wait(60)
+            # Long after the other is known to have failed.
+            time.sleep(0.2)
+        second.set()
+        raise ValueError(item)
+
+    with pytest.raises(ValueError, match="0"):
+        side_by_side(work, [0, 1, 2], 2)
+
+
 def test_a_table_made_in_python_is_that_of_run() -> None:
     table: Any = {"time": [0.0, 1e-3], "base_acceleration": [0.0, 300.0]}
     scene = Scene("pressed", 1e-3, 1e-5, [*2 * ["contact.force"], "base.acceleration"], {}, table)
